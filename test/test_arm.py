@@ -81,7 +81,7 @@ def test_an_unknown_limit_profile_is_refused_with_the_known_ones():
 
 
 def test_own_limits_pass_through():
-    own = arm.LIMITS["urdf"]._replace(lower=np.full(5, 0.1))
+    own = arm.LIMITS["urdf"]._replace(lower=arm.LIMITS["hardware"].lower)
     assert YoubotKinematics(own).limits is own
 
 
@@ -96,3 +96,16 @@ def test_the_limits_as_readings_from_the_upright_arm_are_the_ones_that_sources_p
     # Joint 1 counts from 170 degrees here and from 169 there.
     assert np.allclose(lower, [-170, -65, -151, -102.5, -167.5], atol=1e-6)
     assert np.allclose(upper, [168, 90, 146, 102.5, 167.5], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("lower", "sentence"),
+    [
+        (np.full(5, 7.0), "below its upper"),
+        (np.zeros(4), "5 lower"),
+        (np.full(5, -7.0), "whole turn"),
+    ],
+)
+def test_own_limits_that_are_none_are_refused(lower, sentence):
+    with pytest.raises(InputError, match=sentence):
+        YoubotKinematics(arm.LIMITS["urdf"]._replace(lower=lower))

@@ -28,7 +28,7 @@ def assert_answers(kin, q):
     T = kin.forward_kinematics(q)
     branches = kin.inverse_branches(T, seed=q if q.ndim == 1 else None)
     answers, valid = branches.joints, branches.valid
-    assert np.isnan(answers[~valid]).all() and np.isfinite(answers[valid]).all()
+    assert np.isfinite(answers).all()
     errors = np.abs(
         kin.forward_kinematics(np.where(valid[..., None], answers, 0)) - T[..., None, :, :]
     )
@@ -117,7 +117,7 @@ def test_a_batch_gives_what_its_members_give():
     for index in np.ndindex(2, 3):
         single = KIN.inverse_branches(T[index])
         for ours, theirs in zip(batch, single):
-            assert np.allclose(ours[index], theirs, rtol=0, atol=1e-14, equal_nan=True)
+            assert np.allclose(ours[index], theirs, rtol=0, atol=1e-14)
     assert KIN.inverse_branches(T[:0]).joints.shape == (0, 3, 4, 5)
 
 
@@ -259,3 +259,20 @@ def test_a_pose_at_the_very_edge_of_reach_is_answered_in_spite_of_rounding():
         branches = KIN.inverse_branches(shifted)
         assert branches.valid.any(axis=1).all()
         assert not np.isnan(branches.joints[branches.valid]).any()
+
+
+def test_poses_that_another_forward_kinematics_computed_a_little_differently_are_answered():
+    # A URDF with 12 digits differs by 1e-12. Near the axis, that turned the position's azimuth so
+    # much that exact poses were refused as tilted: the tool's z axis tells it better there.
+    rng = np.random.default_rng(10)
+    for difference in (1e-12, 1e-11):
+        q = random_joints(KIN, 50_000, seed=11)
+        T = KIN.forward_kinematics(q)
+        T[:, :3, 3] += rng.uniform(-difference, difference, (len(q), 3))
+        turn = Rotation.from_rotvec(rng.uniform(-difference, difference, (len(q), 3)))
+        T[:, :3, :3] = turn.as_matrix() @ T[:, :3, :3]
+        branches = KIN.inverse_branches(T)
+        assert branches.valid.any(axis=1).all()
+        i, _ = np.nonzero(branches.valid)
+        reached = KIN.forward_kinematics(branches.joints[branches.valid])
+        assert np.abs(reached - T[i]).max() < 1e-9

@@ -1,16 +1,26 @@
-"""Kinematics and trajectory planning for the KUKA youBot arm."""
+"""Kinematics and trajectory planning for the KUKA youBot arm.
 
-from .arm import JOINT_NAMES, JointLimits, joint_limits
+What other programs import; planning is in ``youbot_kinematics.planner``.
+"""
+
+from .arm import JOINT_NAMES, JointLimits, from_upright, joint_limits, to_upright
 from .exceptions import BagError, InputError, PlanningError, YoubotError
+from .kdl import YoubotKDL
 from .kinematics import YoubotKinematics
+from .planar import PlanarArm2R, PlanarArm4R
 
 __all__ = [
     "JOINT_NAMES",
     "BagError",
     "InputError",
     "JointLimits",
+    "PlanarArm2R",
+    "PlanarArm4R",
     "PlanningError",
     "YoubotError",
+    "YoubotKDL",
     "YoubotKinematics",
+    "from_upright",
     "joint_limits",
+    "to_upright",
 ]

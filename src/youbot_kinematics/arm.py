@@ -106,9 +106,17 @@ def joint_limits(profile) -> JointLimits:
     """Limits of a profile, ``"urdf"`` or ``"hardware"``; a ``JointLimits`` passes through.
 
     Raises:
-        InputError: there is no profile of that name.
+        InputError: there is no profile of that name, or a joint's own limits are out of order or a
+            whole turn apart.
     """
     if isinstance(profile, JointLimits):
+        lower, upper = np.array(profile.lower), np.array(profile.upper)
+        if not lower.shape == upper.shape == (DOF,) or not (lower < upper).all():
+            raise InputError(
+                f"limits must be {DOF} lower ones, each below its upper one; got {profile}"
+            )
+        if (upper - lower >= 2 * np.pi).any():
+            raise InputError(f"limits must be less than a whole turn apart; got {lower}, {upper}")
         return profile
     if profile not in LIMITS:
         raise InputError(f"no limit profile {profile!r}: choose one of {', '.join(LIMITS)}")

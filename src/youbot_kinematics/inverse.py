@@ -31,9 +31,8 @@ BRANCH_NAMES = ("front, elbow +", "front, elbow -", "back, elbow +", "back, elbo
 
 #: How far a pose may be tilted out of the arm's plane and still count as asked for exactly, rad.
 POSE_TOLERANCE = 1e-9
-# Closer to joint 1's axis than this (m), rounding blurs the azimuth of the position, and the tool's
-# z axis tells the arm's plane better: where it fits the position to ON_PLANE (m).
-_NEAR_AXIS, ON_PLANE = 1e-3, 1e-9
+#: A position counts as in a plane, or on joint 1's axis, that it is this near to (m).
+ON_PLANE = 1e-9
 # A tool whose z axis has a smaller horizontal part is vertical.
 _VERTICAL = 1e-9
 
@@ -59,14 +58,13 @@ class Branches(NamedTuple):
     """The whole answer of the inverse kinematics: a row for each of the four branches.
 
     A branch is valid if it has no reason against it: all of ``out_of_reach``, ``limit_excess`` and
-    ``tilt`` are zero to rounding.
+    ``tilt`` are zero to rounding. Where one of them is not, the others are those of the nearest
+    configuration: stretched or folded towards the wrist, turned back into the plane.
     """
 
-    joints: np.ndarray  # (..., 4, 5) rad; NaN where the branch is not valid
+    joints: np.ndarray  # (..., 4, 5) rad; solutions only where ``valid``, else what comes nearest
     valid: np.ndarray  # (..., 4) bool
-    out_of_reach: (
-        np.ndarray
-    )  # (..., 4) m: wrist beyond the stretched (+), inside the folded arm (-)
+    out_of_reach: np.ndarray  # (..., 4) m: wrist beyond the stretched arm (+), inside the folded (-)
     limit_excess: np.ndarray  # (..., 4, 5) rad: below (-) or above (+) the limit, 0 inside
     tilt: np.ndarray  # (..., 4) rad: the tool's z axis out of the arm's plane
 
@@ -118,7 +116,6 @@ def inverse_branches(T, limits: arm.JointLimits, seed=None) -> Branches:
     beyond, tilt = np.repeat(beyond, 2, axis=-1), np.repeat(pose.tilt, 2, axis=-1)
     excess = limits.excess(joints)
     valid = (beyond == 0) & (tilt <= POSE_TOLERANCE) & (excess == 0).all(axis=-1)
-    joints[~valid] = np.nan
     return Branches(joints, valid, beyond, excess, tilt)
 
 
@@ -197,9 +194,9 @@ def _front_azimuth(x, y, tool_z):
     # The tool may lean back over the axis: to the front is where the position is.
     leans_back = x * np.cos(by_tool) + y * np.sin(by_tool) < -ON_PLANE
     by_tool = np.where(leans_back, by_tool + np.pi, by_tool)
-    # Of two directions, the longer one is the less blurred: in m here, of length 1 at most there.
-    near_axis = (radius < _NEAR_AXIS) & (horizontal > radius) & (off_plane < ON_PLANE)
-    return np.where(near_axis, by_tool, by_position)
+    # The nearer to joint 1's axis, the more rounding blurs the azimuth of the position; the more
+    # upright the tool, that of its z axis. The longer arrow tells the plane better.
+    return np.where((horizontal > radius) & (off_plane < ON_PLANE), by_tool, by_position)
 
 
 def plane_joints(radius, height, pitch):

@@ -18,8 +18,10 @@ from .exceptions import InputError
 from .intervals import bound_directions, feasible_intervals, turned_next_to
 from .selection import cost, select_solution
 
-# By how much rounding may push the elbow's cosine beyond 1, as a part of the squares it is made of.
+# An elbow whose cosine is so near to 1 is straight: rounding, as a part of the squares in it.
 _COSINE_ROUNDING = 1e-14
+# Points this little out of reach (m) are on its edge: others' forward kinematics put them there.
+_EDGE = 1e-10
 # A joint this little outside of its limit, by rounding, is on the limit (rad).
 LIMIT_ROUNDING = 1e-9
 # Samples of the free angle on an interval, before the best one is polished.
@@ -45,21 +47,18 @@ def inverse_2r(x, y, l1: float, l2: float):
     Returns:
         ``(a, b, beyond)``: shoulder and elbow angles (rad), each (..., 2), first with the elbow
         angle b >= 0, then with b <= 0, and by how much each point is out of reach (m), (...):
-        positive beyond the stretched arm, negative inside the folded one, 0 within reach. Out of
-        reach, the angles are those of the nearest point that can be reached. At the edge of reach
-        both elbows are the same, exactly straight or folded. On the shoulder itself (links of one
-        length), any shoulder angle will do and one is given.
+        positive beyond the stretched arm, negative inside the folded one, 0 within reach and up to
+        1e-10 m out of it. Out of reach, the angles are those of the nearest point that can be
+        reached. At the edge of reach both elbows are the same, exactly straight or folded. On the
+        shoulder itself (links of one length), any shoulder angle will do and one is given.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     distance = np.hypot(x, y)
     squares, product = l1**2 + l2**2, 2 * l1 * l2
     cos_b, rounding = (distance**2 - squares) / product, _COSINE_ROUNDING * squares / product
     stretched, folded = cos_b >= 1 - rounding, cos_b <= -1 + rounding
-    beyond = np.where(
-        cos_b > 1 + rounding,
-        distance - (l1 + l2),
-        np.where(cos_b < -1 - rounding, distance - abs(l1 - l2), 0.0),
-    )
+    beyond = np.maximum(distance - (l1 + l2), 0) + np.minimum(distance - abs(l1 - l2), 0)
+    beyond = np.where(np.abs(beyond) <= _EDGE, 0.0, beyond)
     elbow = np.arccos(np.where(stretched, 1.0, np.where(folded, -1.0, cos_b)))
     # Folded to both sides is the same: pi, not -pi.
     b = np.stack([elbow, np.where(folded, elbow, -elbow)], axis=-1)
@@ -73,7 +72,7 @@ def wrap_between(q: np.ndarray, lower, upper) -> np.ndarray:
     A value outside of its limit by no more than ``LIMIT_ROUNDING`` is set on the limit.
     """
     wrapped = q + 2 * np.pi * np.round(((lower + upper) / 2 - q) / (2 * np.pi))
-    on_limit = np.clip(wrapped, lower, upper)
+    on_limit = np.minimum(np.maximum(wrapped, lower), upper)
     return np.where(np.abs(wrapped - on_limit) <= LIMIT_ROUNDING, on_limit, wrapped)
 
 
