@@ -62,7 +62,8 @@ class JointLimits(NamedTuple):
         i = int(np.argmax(np.abs(excess)))
         bound = self.lower[i] if excess[i] < 0 else self.upper[i]
         side = "below its lower" if excess[i] < 0 else "above its upper"
-        return f"{JOINT_NAMES[i]} at {q[i]:.4f} rad is {side} limit {bound:.4f} rad"
+        beyond = f"{abs(excess[i]):.2g} rad {side}"
+        return f"{JOINT_NAMES[i]} at {q[i]:.4f} rad is {beyond} limit {bound:.4f} rad"
 
 
 _VELOCITY = np.full(DOF, np.pi / 2)

@@ -1,0 +1,168 @@
+"""Arrays <-> ROS messages: conversions only, no node, no clock.
+
+Everything is in ``base_link``, in SI units. Headers have stamp zero unless a time is given: for a
+trajectory it means "start now", for RViz "whenever".
+"""
+
+from __future__ import annotations
+
+import genpy
+import numpy as np
+from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Vector3
+from nav_msgs.msg import Path
+from scipy.spatial.transform import Rotation
+from sensor_msgs.msg import JointState
+from std_msgs.msg import ColorRGBA
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from visualization_msgs.msg import Marker, MarkerArray
+
+from . import arm
+from .contract import Command, command_from_trajectory
+from .trajectory import Trajectory
+
+SPHERE_DIAMETER = 0.02  # m
+NUMBER_HEIGHT = 0.035  # m, of the digits
+AXIS_LENGTH = 0.05  # m, of a checkpoint's frame
+
+ORANGE = ColorRGBA(0.95, 0.45, 0.0, 0.9)
+WHITE = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+AXIS_COLORS = (  # x, y, z, as everywhere in ROS
+    ColorRGBA(0.9, 0.2, 0.2, 1.0),
+    ColorRGBA(0.2, 0.75, 0.2, 1.0),
+    ColorRGBA(0.25, 0.4, 1.0, 1.0),
+)
+
+
+# Trajectories
+
+
+def trajectory_message(trajectory: Trajectory) -> JointTrajectory:
+    """The message that makes a controller run a trajectory from now on (stamp zero)."""
+    command = command_from_trajectory(trajectory)
+    rows = zip(command.times, command.positions, command.velocities, command.accelerations)
+    points = [
+        JointTrajectoryPoint(
+            positions=position.tolist(),
+            velocities=velocity.tolist(),
+            accelerations=acceleration.tolist(),
+            time_from_start=genpy.Duration(0, ns),
+        )
+        for ns, position, velocity, acceleration in rows
+    ]
+    return JointTrajectory(joint_names=list(command.joint_names), points=points)
+
+
+def command_from_message(message: JointTrajectory) -> Command:
+    """What a message says, whatever it is like; ``contract`` says whether it is well formed."""
+    points = message.points
+    return Command(
+        joint_names=tuple(message.joint_names),
+        times=[p.time_from_start.to_nsec() for p in points],
+        positions=[p.positions for p in points],
+        velocities=[p.velocities for p in points],
+        accelerations=[p.accelerations for p in points],
+        stamp=message.header.stamp.to_nsec(),
+    )
+
+
+# Joint states
+
+
+def joint_state_message(stamp: genpy.Time, positions, velocities) -> JointState:
+    """State of the arm's joints at a time: positions (5,) rad, velocities (5,) rad/s."""
+    message = JointState(name=list(arm.JOINT_NAMES))
+    message.header.stamp = stamp
+    message.position, message.velocity = list(positions), list(velocities)
+    return message
+
+
+def joints_from_message(message: JointState, field: str = "position") -> np.ndarray | None:
+    """The arm's five joints of a message that may have others (wheels, gripper), in any order.
+
+    Args:
+        message: names, and a value of ``field`` for each.
+        field: ``"position"`` (rad) or ``"velocity"`` (rad/s).
+
+    Returns:
+        (5,) in the arm's order, or None: a joint is missing or named twice, the numbers of names
+        and values differ, or a value is not finite.
+    """
+    names, values = list(message.name), getattr(message, field)
+    if len(names) != len(values) or any(names.count(name) != 1 for name in arm.JOINT_NAMES):
+        return None
+    joints = np.array([values[names.index(name)] for name in arm.JOINT_NAMES], dtype=float)
+    return joints if np.isfinite(joints).all() else None
+
+
+# What RViz shows
+
+
+def pose_message(T: np.ndarray) -> Pose:
+    """A pose (4, 4), m, as position and quaternion."""
+    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat().tolist()
+    return Pose(Point(*T[:3, 3].tolist()), Quaternion(*quaternion))
+
+
+def path_message(poses: np.ndarray) -> Path:
+    """Poses (n, 4, 4) of the tool in ``base_link``, m, as a path."""
+    path = Path()
+    path.header.frame_id = arm.BASE_FRAME
+    for T in poses:
+        stamped = PoseStamped(pose=pose_message(T))
+        stamped.header.frame_id = arm.BASE_FRAME
+        path.poses.append(stamped)
+    return path
+
+
+def checkpoint_markers(checkpoints: np.ndarray) -> MarkerArray:
+    """Checkpoints in visiting order as spheres, their numbers from 1 on, and their frames.
+
+    The first marker deletes what was shown before, so that a shorter tour leaves nothing behind.
+
+    Args:
+        checkpoints: (n, 4, 4) in ``base_link``, m.
+    """
+    markers = [Marker(action=Marker.DELETEALL)]
+    for number, T in enumerate(checkpoints, start=1):
+        markers += [_sphere(T), _number(T, str(number)), _frame(T)]
+    for i, marker in enumerate(markers):
+        marker.id = i
+        marker.header.frame_id = arm.BASE_FRAME
+    return MarkerArray(markers)
+
+
+def _sphere(T: np.ndarray) -> Marker:
+    return Marker(
+        ns="checkpoints",
+        type=Marker.SPHERE,
+        pose=pose_message(T),
+        scale=Vector3(SPHERE_DIAMETER, SPHERE_DIAMETER, SPHERE_DIAMETER),
+        color=ORANGE,
+    )
+
+
+def _number(T: np.ndarray, text: str) -> Marker:
+    pose = pose_message(T)
+    pose.position.z += NUMBER_HEIGHT
+    return Marker(
+        ns="numbers",
+        type=Marker.TEXT_VIEW_FACING,
+        pose=pose,
+        scale=Vector3(z=NUMBER_HEIGHT),
+        color=WHITE,
+        text=text,
+    )
+
+
+def _frame(T: np.ndarray) -> Marker:
+    """Three lines from the origin along x, y and z."""
+    ends = [Point(*end) for end in (AXIS_LENGTH * np.eye(3)).tolist()]
+    return Marker(
+        ns="frames",
+        type=Marker.LINE_LIST,
+        pose=pose_message(T),
+        scale=Vector3(x=0.004),
+        points=[point for end in ends for point in (Point(), end)],
+        colors=[color for color in AXIS_COLORS for _ in range(2)],
+        color=WHITE,  # RViz takes the colours above, but warns of a marker that is transparent
+    )

@@ -1,0 +1,85 @@
+"""What the nodes share: how they start, read their parameters, wait and end."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Callable, TypeVar
+
+import rosgraph
+import rospy
+
+from ..exceptions import InputError, YoubotError
+
+#: Where the controller of the course's simulation listens; relative, so that it can be remapped.
+COMMAND_TOPIC = "EffortJointInterface_trajectory_controller/command"
+JOINT_STATES_TOPIC = "joint_states"
+
+T = TypeVar("T")
+
+# Exit statuses; a node that is told to end while all is well exits with 0.
+FAILED, BAD_INPUT = 1, 2
+
+
+class ShutdownError(YoubotError):
+    """The node was told to end before its work was done."""
+
+
+def run_node(name: str, body: Callable[[], None]) -> None:
+    """Runs the body of a node and exits: what cannot be done is one logged sentence, no traceback.
+
+    Exits with status 2 if what the node was given cannot be used, 1 for any other ``YoubotError``
+    and where there is no ROS master.
+    """
+    if not rosgraph.is_master_online():
+        uri = rosgraph.get_master_uri()
+        print(f"{name}: there is no ROS master at {uri}; roscore starts one", file=sys.stderr)
+        sys.exit(FAILED)
+    rospy.init_node(name)
+    try:
+        body()
+    except InputError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(BAD_INPUT)
+    except YoubotError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(FAILED)
+    except rospy.ROSInterruptException:
+        pass
+
+
+def read_parameters(make: Callable[[dict], object]):
+    """This node's private parameters through ``make``, which checks them.
+
+    The parameter server keeps what a command line sets (``_name:=value``) after the node has ended.
+    A run that is refused takes its own back, so that the next one is not refused for them as well.
+
+    Raises:
+        InputError: from ``make``.
+    """
+    try:
+        return make(rospy.get_param("~", {}))
+    except InputError:
+        for argument in sys.argv[1:]:
+            name, assignment, _ = argument.partition(":=")
+            if assignment and name.startswith("_") and rospy.has_param("~" + name[1:]):
+                rospy.delete_param("~" + name[1:])
+        raise
+
+
+def wait_for(get: Callable[[], T | None], timeout: float) -> T | None:
+    """What ``get`` gives once that is not None, or None after ``timeout`` s.
+
+    The seconds are the wall's: a simulated clock that stands still must not make a wait endless.
+
+    Raises:
+        ShutdownError: ROS shuts down.
+    """
+    deadline = time.monotonic() + timeout
+    while True:
+        result = get()
+        if result is not None or time.monotonic() >= deadline:
+            return result
+        if rospy.is_shutdown():
+            raise ShutdownError("told to end while waiting: nothing more is done")
+        time.sleep(0.02)

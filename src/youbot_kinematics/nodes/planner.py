@@ -1,0 +1,154 @@
+"""The node ``planner_node``: from a bag's targets to one trajectory for the arm's controller.
+
+It plans from where the arm stands, shows the checkpoints and the path, sends the trajectory once a
+controller listens, and then stays for the service ``~replan``, which plans again from where the arm
+stands by then. While the arm moves nothing is planned: every trajectory starts at rest.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Path
+from std_srvs.srv import Trigger, TriggerResponse
+from trajectory_msgs.msg import JointTrajectory
+from visualization_msgs.msg import MarkerArray
+
+from .. import arm
+from ..exceptions import InputError, YoubotError
+from ..messages import checkpoint_markers, path_message, trajectory_message
+from ..parameters import Parameters, parameter
+from ..plan_bag import summary
+from ..planner import Plan, plan
+from ..targets import load_targets
+from .common import COMMAND_TOPIC, read_parameters, run_node, wait_for
+from .joint_states import JointStates
+
+#: How far the arm may be from a trajectory's first point when it is sent, rad.
+START_TOLERANCE = 0.02
+
+# How long ``~replan`` gives an arm that has just stopped to prove that it stands, s.
+MOMENT = 0.5
+
+
+class NotSentError(YoubotError):
+    """There is a trajectory, but it could not, or must not, be handed to the controller."""
+
+
+@dataclass(frozen=True)
+class NodeParameters(Parameters):
+    """The planner's parameters, and what only the node needs."""
+
+    bag: str = parameter("", "bag file with the targets; required")
+    start_timeout: float = parameter(
+        5.0, "how long to wait for the arm's joint states, s", at_least=0.0, at_most=3600.0
+    )
+    subscriber_timeout: float = parameter(
+        30.0, "how long to wait for a controller to listen, s", at_least=0.0, at_most=3600.0
+    )
+
+    def __post_init__(self):
+        super().__post_init__()
+        if not self.bag:
+            raise InputError("parameter bag is required: the file with the targets (_bag:=FILE)")
+
+
+class PlannerNode:
+    """Topics, service and state of the node; planning itself is in ``planner``.
+
+    Raises:
+        BagError: the bag has no usable targets.
+    """
+
+    def __init__(self, parameters: NodeParameters):
+        self.parameters = parameters
+        self.targets = load_targets(parameters.bag, parameters.topic, parameters.limits)
+        self._busy = threading.Lock()
+        self._joint_states = JointStates()
+        # Not latched, or the arm would move again each time that a controller connects.
+        self._command = rospy.Publisher(COMMAND_TOPIC, JointTrajectory, queue_size=1)
+        self._markers = rospy.Publisher(
+            "checkpoint_positions", MarkerArray, queue_size=1, latch=True
+        )
+        self._path = rospy.Publisher("planned_path", Path, queue_size=1, latch=True)
+
+    def run(self) -> None:
+        """Plans, sends, and serves ``~replan`` until ROS shuts down.
+
+        Raises:
+            InputError, PlanningError: there is nothing to send.
+            NotSentError: it could not be sent.
+        """
+        self._plan_and_send(self._first_start())
+        rospy.Service("~replan", Trigger, self._replan)
+        rospy.spin()
+
+    def _first_start(self) -> np.ndarray:
+        """Where the first trajectory starts, (5,) rad: as given, as measured, or all zeros."""
+        if self.parameters.start is not None:
+            return np.array(self.parameters.start)
+        states, timeout = self._joint_states, self.parameters.start_timeout
+        here = wait_for(states.standing, timeout)
+        if here is not None:
+            return here
+        if states.position() is not None:
+            raise NotSentError(f"the arm has not stood still in {timeout:g} s: nothing is planned")
+        came = f"{states.passed_over} without all of the arm's" if states.passed_over else "no"
+        rospy.logwarn("%s joint states in %g s: assuming that all are zero", came, timeout)
+        return np.zeros(arm.DOF)
+
+    def _plan_and_send(self, start: np.ndarray) -> Plan:
+        planned = plan(self.targets, start, self.parameters)
+        for line in summary(planned):
+            rospy.loginfo("%s", line)
+        self._markers.publish(checkpoint_markers(planned.checkpoints[1:]))
+        self._path.publish(path_message(planned.poses))
+        self._send(planned)
+        return planned
+
+    def _send(self, planned: Plan) -> None:
+        """Publishes the trajectory once a controller listens, if the arm is where it starts."""
+        topic, timeout = self._command.resolved_name, self.parameters.subscriber_timeout
+        if not wait_for(lambda: self._command.get_num_connections() or None, timeout):
+            raise NotSentError(f"no controller listened on {topic} within {timeout:g} s: not sent")
+        here = self._joint_states.position()
+        if here is not None and np.abs(here - planned.start).max() > START_TOLERANCE:
+            i = int(np.argmax(np.abs(here - planned.start)))
+            raise NotSentError(
+                f"not sent: {arm.JOINT_NAMES[i]} is at {here[i]:.4f} rad, and the trajectory starts"
+                f" at {planned.start[i]:.4f} rad"
+            )
+        self._joint_states.expect_motion()
+        self._command.publish(trajectory_message(planned.trajectory))
+        rospy.loginfo("sent %d points to %s", len(planned.trajectory.times), topic)
+
+    def _replan(self, _request) -> TriggerResponse:
+        """Serves ``~replan``: the tour again, from where the arm stands now."""
+        if not self._busy.acquire(blocking=False):
+            return TriggerResponse(False, "refused: already planning")
+        try:
+            planned = self._plan_and_send(self._measured_start())
+        except YoubotError as error:
+            rospy.logwarn("replan: %s", error)
+            return TriggerResponse(False, str(error))
+        finally:
+            self._busy.release()
+        message = f"{len(planned.targets)} targets in {planned.trajectory.duration:.2f} s"
+        return TriggerResponse(True, message)
+
+    def _measured_start(self) -> np.ndarray:
+        here = wait_for(self._joint_states.standing, MOMENT)
+        if here is not None:
+            return here
+        if self._joint_states.position() is not None:
+            raise NotSentError("refused: the arm is moving; ask again when it stands still")
+        raise NotSentError("refused: no joint states come, so where the arm is is unknown")
+
+
+def main() -> None:
+    run_node(
+        "planner_node", lambda: PlannerNode(read_parameters(NodeParameters.from_dict)).run()
+    )

@@ -1,0 +1,90 @@
+"""Joint paths, timed trajectories, and how the controller fills in between their points."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+
+class Segment(NamedTuple):
+    """A stretch of a trajectory with one purpose, from one checkpoint to the next.
+
+    Checkpoint 0 is where the arm starts; checkpoint i is the i-th target visited.
+    """
+
+    kind: str  # "line", where the tool follows its straight line; "approach", the move to the first
+    # one; "reconfiguration", a change of posture at one point; "detour", around what is out of reach
+    start: float  # s
+    end: float  # s
+    from_checkpoint: int
+    to_checkpoint: int
+
+
+class JointPath(NamedTuple):
+    """A stretch of the way in joint space with one purpose, not timed yet.
+
+    It begins and ends at rest, and runs through its joints as a cubic spline over ``s``.
+    """
+
+    kind: str  # as in Segment
+    from_checkpoint: int
+    to_checkpoint: int
+    s: np.ndarray  # (m,) increasing from 0 to 1; for a line, the fraction of it that is done
+    joints: np.ndarray  # (m, 5) rad
+
+    def spline(self) -> CubicSpline:
+        """The joints (rad) as a function of s, twice continuously differentiable."""
+        return CubicSpline(self.s, self.joints)
+
+
+class Trajectory(NamedTuple):
+    """Points of the five joints at uniformly spaced times; the first is where the arm is."""
+
+    times: np.ndarray  # (n,) s, from 0
+    positions: np.ndarray  # (n, 5) rad
+    velocities: np.ndarray  # (n, 5) rad/s
+    accelerations: np.ndarray  # (n, 5) rad/s^2
+    segments: tuple[Segment, ...] = ()
+
+    @property
+    def duration(self) -> float:
+        """Time of the last point, s."""
+        return float(self.times[-1])
+
+
+def interpolate(trajectory: Trajectory, times):
+    """State of the arm at given times, as ``joint_trajectory_controller`` interpolates it.
+
+    Between two points the controller follows the quintic polynomial that meets the position,
+    velocity and acceleration of both; before the first point and after the last it stands there.
+
+    Args:
+        trajectory: one point or more.
+        times: (m,) s.
+
+    Returns:
+        ``(positions, velocities, accelerations)``, each (m, 5): rad, rad/s, rad/s^2.
+    """
+    knots = trajectory.times
+    times = np.clip(np.asarray(times, dtype=float), knots[0], knots[-1])
+    if len(knots) == 1:
+        return tuple(np.repeat(a, len(times), axis=0) for a in trajectory[1:4])
+    i = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
+    h = (knots[i + 1] - knots[i])[:, None]
+    t = (times - knots[i])[:, None]
+    p, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
+    # The cubic's and higher coefficients, from what the quadratic start leaves to the end.
+    p0, v0, a0 = p[i], v[i], a[i]
+    dp = p[i + 1] - p0 - v0 * h - a0 * h**2 / 2
+    dv = (v[i + 1] - v0 - a0 * h) * h
+    da = (a[i + 1] - a0) * h**2
+    c3 = (10 * dp - 4 * dv + da / 2) / h**3
+    c4 = (-15 * dp + 7 * dv - da) / h**4
+    c5 = (6 * dp - 3 * dv + da / 2) / h**5
+    return (
+        p0 + t * (v0 + t * (a0 / 2 + t * (c3 + t * (c4 + t * c5)))),
+        v0 + t * (a0 + t * (3 * c3 + t * (4 * c4 + t * 5 * c5))),
+        a0 + t * (6 * c3 + t * (12 * c4 + t * 20 * c5)),
+    )
