@@ -102,9 +102,7 @@ def test_kdl_plans_the_same_as_the_table(planned):
     pytest.importorskip("urdf_parser_py")
     by_kdl = plan(TARGETS, START, Parameters(kinematics="kdl"))
     assert by_kdl.solver == planned.solver == "pseudo_inverse"
-    np.testing.assert_allclose(
-        by_kdl.trajectory.positions, planned.trajectory.positions, atol=1e-6
-    )
+    np.testing.assert_allclose(by_kdl.trajectory.positions, planned.trajectory.positions, atol=1e-6)
 
 
 def test_the_hardware_limits_are_kept_when_asked_for():
@@ -115,7 +113,7 @@ def test_the_hardware_limits_are_kept_when_asked_for():
 
 
 def test_a_start_outside_of_the_limits_is_refused_with_the_joint():
-    with pytest.raises(InputError, match="arm_joint_3 at 0.5"):
+    with pytest.raises(InputError, match=r"arm_joint_3 at 0\.5"):
         plan(TARGETS, [0, 0, 0.5, 0, 0])
 
 

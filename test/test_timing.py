@@ -81,7 +81,7 @@ def test_paths_follow_each_other_with_a_point_at_rest_between_them():
     first, second = trajectory.segments
     assert (first.from_checkpoint, first.to_checkpoint) == (0, 1)
     assert first.start == 0.0 and first.end == second.start and second.end == trajectory.duration
-    at_stop = int(round(first.end / DT))
+    at_stop = round(first.end / DT)
     np.testing.assert_array_equal(trajectory.positions[at_stop], b)
     assert not trajectory.velocities[at_stop].any()
     np.testing.assert_allclose(np.diff(trajectory.times), DT, atol=1e-12)

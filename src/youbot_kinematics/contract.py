@@ -26,9 +26,9 @@ class Command(NamedTuple):
 
     joint_names: Sequence[str]
     times: Sequence[int]  # (n,) ns from the start
-    positions: Sequence[Sequence[float]]  # (n, 5) rad, if it is well formed
-    velocities: Sequence[Sequence[float]]  # (n, 5) rad/s
-    accelerations: Sequence[Sequence[float]]  # (n, 5) rad/s^2
+    positions: Sequence[Sequence[float]] | np.ndarray  # (n, 5) rad, if it is well formed
+    velocities: Sequence[Sequence[float]] | np.ndarray  # (n, 5) rad/s
+    accelerations: Sequence[Sequence[float]] | np.ndarray  # (n, 5) rad/s^2
     stamp: int = 0  # ns, when to start; 0 is now
 
 
@@ -45,8 +45,8 @@ def command_from_trajectory(trajectory: Trajectory) -> Command:
 
 def trajectory_from_command(command: Command) -> Trajectory:
     """The arrays of a command that has no ``acceptance_problems``; its stamp is left out."""
-    rows = (np.array(r, dtype=float).reshape(-1, arm.DOF) for r in command[2:5])
-    return Trajectory(np.array(command.times, dtype=np.int64) / NANOSECONDS, *rows)
+    q, v, a = (np.array(rows, dtype=float).reshape(-1, arm.DOF) for rows in command[2:5])
+    return Trajectory(np.array(command.times, dtype=np.int64) / NANOSECONDS, q, v, a)
 
 
 def motion_problems(command: Command) -> list[str]:

@@ -120,9 +120,11 @@ def standing(position: np.ndarray, time: float) -> Trajectory:
 
 def _select(trajectory: Trajectory, which: np.ndarray) -> Trajectory:
     """The points of a mask (n,) of bool."""
-    return Trajectory(*(array[which] for array in trajectory[:4]))
+    times, q, v, a = (array[which] for array in trajectory[:4])
+    return Trajectory(times, q, v, a)
 
 
 def _join(parts: list[Trajectory]) -> Trajectory:
     """One trajectory of the points of several, whose times follow each other."""
-    return Trajectory(*(np.concatenate(arrays) for arrays in zip(*(p[:4] for p in parts))))
+    times, q, v, a = (np.concatenate(arrays) for arrays in zip(*(p[:4] for p in parts)))
+    return Trajectory(times, q, v, a)

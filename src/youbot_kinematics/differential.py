@@ -50,7 +50,6 @@ class PositionSolution(NamedTuple):
     joints: np.ndarray  # (5,) rad, inside the limits
     residual: float  # distance of the tool from where it should be, m
     angle: float  # angle of the tool's orientation from the wanted one, rad
-    iterations: int
 
     @property
     def converged(self) -> bool:
@@ -77,7 +76,7 @@ def ik_position_only(
     """
     q = np.array(q0, dtype=float)
     goal = _turned_at_most(kinematics.forward_kinematics(q), pose, max_turn)
-    for iteration in range(MAX_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         linear, angular = _pose_error(kinematics.forward_kinematics(q), goal)
         step = _limited_step(
             kinematics.get_jacobian(q), linear, angular if max_turn else None, q, limits
@@ -87,9 +86,7 @@ def ik_position_only(
             break
         q = q + step
     linear, angular = _pose_error(kinematics.forward_kinematics(q), pose)
-    return PositionSolution(
-        q, float(np.linalg.norm(linear)), float(np.linalg.norm(angular)), iteration + 1
-    )
+    return PositionSolution(q, float(np.linalg.norm(linear)), float(np.linalg.norm(angular)))
 
 
 def full_checkpoints_to_joints(
@@ -133,7 +130,7 @@ def track_line(kinematics: Kinematics, T_a, T_b, q_a, limits: arm.JointLimits, n
     Raises:
         PlanningError: as ``full_checkpoints_to_joints``.
     """
-    length = np.linalg.norm(T_b[:3, 3] - T_a[:3, 3])
+    length = float(np.linalg.norm(T_b[:3, 3] - T_a[:3, 3]))
     s, joints, goals = [0.0], [q_a], [1.0]
     while goals:
         half_way, pose = pose_between(T_a, T_b, [(s[-1] + goals[-1]) / 2, goals[-1]])
@@ -242,7 +239,7 @@ def _limited_step(J, linear, angular, q, limits) -> np.ndarray:
 def _prioritised_step(J, linear, angular) -> np.ndarray:
     """Joint step for the position, and in its null space for the orientation, unless None."""
     J_linear, J_angular = J[:3], J[3:]
-    step = damped_pseudo_inverse(J_linear, np.linalg.norm(linear)) @ linear
+    step = damped_pseudo_inverse(J_linear, float(np.linalg.norm(linear))) @ linear
     if angular is None:
         return step
     null_space = np.eye(J.shape[1]) - damped_pseudo_inverse(J_linear, NULL_DAMPING) @ J_linear
@@ -265,14 +262,16 @@ def _why_not(waypoint, pose, q_before, solution, limits) -> str:
     q = solution.joints
     if solution.converged:
         joint = int(np.argmax(np.abs(q - q_before)))
-        what = f"{arm.JOINT_NAMES[joint]} jumps there from {q_before[joint]:.4f} to {q[joint]:.4f} rad"
+        name, before, now = arm.JOINT_NAMES[joint], q_before[joint], q[joint]
+        what = f"{name} jumps there from {before:.4f} to {now:.4f} rad"
     else:
         to_lower, to_upper = q - limits.lower, limits.upper - q
         joint = int(np.argmin(np.minimum(to_lower, to_upper)))
         side = "lower" if to_lower[joint] <= to_upper[joint] else "upper"
         what = (
             f"the tool stays {solution.residual * 1000:.3g} mm away, with {arm.JOINT_NAMES[joint]}"
-            f" at {q[joint]:.4f} rad next to its {side} limit {getattr(limits, side)[joint]:.4f} rad"
+            f" at {q[joint]:.4f} rad next to its {side} limit"
+            f" {getattr(limits, side)[joint]:.4f} rad"
         )
     x, y, z = pose[:3, 3]
     return (

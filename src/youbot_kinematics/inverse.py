@@ -64,7 +64,9 @@ class Branches(NamedTuple):
 
     joints: np.ndarray  # (..., 4, 5) rad; solutions only where ``valid``, else what comes nearest
     valid: np.ndarray  # (..., 4) bool
-    out_of_reach: np.ndarray  # (..., 4) m: wrist beyond the stretched arm (+), inside the folded (-)
+    out_of_reach: (
+        np.ndarray
+    )  # (..., 4) m: wrist beyond the stretched arm (+), inside the folded (-)
     limit_excess: np.ndarray  # (..., 4, 5) rad: below (-) or above (+) the limit, 0 inside
     tilt: np.ndarray  # (..., 4) rad: the tool's z axis out of the arm's plane
 

@@ -98,7 +98,9 @@ class Parameters(Checked):
         "urdf", "joint limits: the URDF's, or the real arm's driver's", choices=tuple(arm.LIMITS)
     )
     timing: str = parameter(
-        "optimal", "time scaling of each segment: time-optimal, or cubic", choices=("optimal", "cubic")
+        "optimal",
+        "time scaling of each segment: time-optimal, or cubic",
+        choices=("optimal", "cubic"),
     )
     velocity_scaling: float = parameter(
         1.0, "fraction of the joints' velocity limits to use", at_least=0.01, at_most=1.0

@@ -107,7 +107,7 @@ def _tour(kinematics, start, T_start, targets: Targets, order, p: Parameters) ->
 
 def _demanded(kinematics, targets: Targets, i: int, checkpoint: str):
     """Joints (k, 5) rad of which one must be met at a target, or None for its position alone."""
-    if checkpoint == "joints":
+    if checkpoint == "joints" and targets.joints is not None:
         return targets.joints[i : i + 1]
     if checkpoint == "pose":
         solutions = kinematics.inverse_kinematics(targets.poses[i])

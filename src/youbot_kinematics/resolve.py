@@ -31,6 +31,7 @@ from .trajectory import JointPath
 
 # Joints are computed at so many points of a step between waypoints; a spline runs through them.
 _SAMPLES_PER_STEP = 4
+_SPACING = 0.5  # steps between two waypoints that a curve goes through
 # A joint that the smooth pitch brings nearer to its limit than the waypoints' margin, rad.
 _BESIDE_LIMITS = 1e-9
 
@@ -171,21 +172,42 @@ def _joint_paths(tour, runs, way, pitch, roll, limits) -> list[JointPath]:
 
 def _along(tour: Tour, way: Itinerary, on_run, pitch, roll, limits):
     """Joints (m, 5) along a run, closely sampled, and how far along they are: s (m,) in 0..1."""
-    u, at = way.route.u[on_run], way.route.progress[on_run]
-    line = tour.lines[way.route.line[on_run][0]]
+    every = np.flatnonzero(on_run)
+    curve = CubicSpline
+    for knots in (_spaced(way.route.progress[every]), np.arange(len(every))):
+        chosen, at = every[knots], way.route.progress[every[knots]]
+        fine = _densely(tour, way, chosen)
+        progress = fine.route.progress
+        if len(every) == 1:
+            return np.zeros(1), np.column_stack([joints_on(fine, pitch, limits)[0], roll])
+        joints, excess = joints_on(fine, curve(at, pitch[knots])(progress), limits)
+        if (excess <= _BESIDE_LIMITS).all():
+            break
+        curve = PchipInterpolator  # in a narrow tube a curve must not swing
+    s = (progress - at[0]) / (at[-1] - at[0])
+    return s, np.column_stack([joints, CubicSpline(at, roll[knots])(progress)])
+
+
+def _spaced(at: np.ndarray) -> np.ndarray:
+    """Which waypoints of a run a curve goes through: the ends, and what is not close to others.
+
+    At the end of a detour waypoints crowd, and a curve through all of them would quiver.
+    """
+    kept = [0]
+    for i in range(1, len(at) - 1):
+        if min(at[i] - at[kept[-1]], at[-1] - at[i]) >= _SPACING:
+            kept.append(i)
+    return np.array(kept if len(at) == 1 else [*kept, len(at) - 1])
+
+
+def _densely(tour: Tour, way: Itinerary, chosen) -> Itinerary:
+    """The itinerary of one run with ``_SAMPLES_PER_STEP`` as many waypoints, up to the limits."""
+    u = way.route.u[chosen]
     n = (len(u) - 1) * _SAMPLES_PER_STEP + 1
     dense = np.interp(np.linspace(0, len(u) - 1, n), np.arange(len(u)), u)
-    route = route_along([line], [dense])._replace(margin=np.zeros(n))
-    fine = way._replace(
-        route=route,
-        track=np.full(n, way.track[on_run][0]),
-        elbow=np.full(n, way.elbow[on_run][0]),
+    route = route_along([tour.lines[way.route.line[chosen[0]]]], [dense])
+    return way._replace(
+        route=route._replace(margin=np.zeros(n)),
+        track=np.full(n, way.track[chosen[0]]),
+        elbow=np.full(n, way.elbow[chosen[0]]),
     )
-    if n == 1:
-        joints, _ = joints_on(fine, pitch, limits)
-        return np.zeros(1), np.column_stack([joints, roll])
-    joints, excess = joints_on(fine, CubicSpline(at, pitch)(route.progress), limits)
-    if not (excess <= _BESIDE_LIMITS).all():  # in a narrow tube a curve must not swing
-        joints, _ = joints_on(fine, PchipInterpolator(at, pitch)(route.progress), limits)
-    s = (route.progress - at[0]) / (at[-1] - at[0])
-    return s, np.column_stack([joints, CubicSpline(at, roll)(route.progress)])

@@ -37,7 +37,7 @@ def pseudo_inverse(tour: Tour, limits: JointLimits, p: Parameters) -> list[Joint
     """The course's way: the pseudo-inverse, from waypoint to waypoint along each straight line.
 
     Raises:
-        PlanningError: it cannot track a line inside the limits, or is asked for more than positions.
+        PlanningError: it cannot track a line inside the limits, or must meet more than positions.
     """
     if tour.exact.any():
         raise PlanningError(f"it meets positions only, and checkpoint: {p.checkpoint} is asked for")

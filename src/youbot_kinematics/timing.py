@@ -4,10 +4,11 @@ Each path runs from rest to rest. ``cubic``: as ``s(t) = 3 (t/T)^2 - 2 (t/T)^3``
 "Modern Robotics" (2017), section 9.2.2), T the shortest time that keeps the velocity and
 acceleration limits on the whole of it. ``optimal``: as fast as the limits let it at each point.
 
-Both rates ds/dt have corners, where the acceleration jumps, and a jump between two samples makes the
-controller's quintic overshoot. So the rate is only taken at the samples, and the acceleration of s
-runs linearly from one to the next: the quintic follows such a motion to the letter. What little is
-left beyond the limits is measured on the controller's own interpolation, and the time stretched.
+Both rates ds/dt have corners, where the acceleration jumps, and a jump between two samples makes
+the controller's quintic overshoot. So the rate is only taken at the samples, and the acceleration
+of s runs linearly from one to the next: the quintic follows such a motion to the letter. What
+little is left beyond the limits is measured on the controller's own interpolation, and the time
+stretched.
 """
 
 from __future__ import annotations
@@ -94,7 +95,9 @@ def time_path(path: JointPath, velocity, acceleration, dt: float, rate=optimal_r
     while True:  # each turn is longer, and a motion that is slow enough keeps all limits
         stretch = (steps - 1) * dt / times[-1]
         at = np.arange(steps + 1) * dt
-        samples = sample_path(spline, np.interp(at, times * stretch, rates / stretch, right=0.0), dt)
+        samples = sample_path(
+            spline, np.interp(at, times * stretch, rates / stretch, right=0.0), dt
+        )
         load = peak_load(samples, velocity, acceleration, dt)
         if load <= 1.0:
             samples[0, [0, -1]] = path.joints[[0, -1]]  # to the last bit

@@ -14,8 +14,10 @@ class Segment(NamedTuple):
     Checkpoint 0 is where the arm starts; checkpoint i is the i-th target visited.
     """
 
-    kind: str  # "line", where the tool follows its straight line; "approach", the move to the first
-    # one; "reconfiguration", a change of posture at one point; "detour", around what is out of reach
+    # "line": the tool follows its straight line; "approach": the move to where the first begins;
+    # "reconfiguration": a change of posture, from and to one point of the tool; "detour": from
+    # where the arm cannot follow the line to where it can again.
+    kind: str
     start: float  # s
     end: float  # s
     from_checkpoint: int

@@ -26,6 +26,7 @@ from ..messages import command_from_message, joint_state_message
 from ..parameters import Checked, parameter
 from .common import COMMAND_TOPIC, JOINT_STATES_TOPIC, read_parameters, run_node
 
+
 @dataclass(frozen=True)
 class SimulatorParameters(Checked):
     """What the simulator can be told."""
@@ -43,7 +44,8 @@ class ArmSimulator:
     """
 
     def __init__(self, parameters: SimulatorParameters):
-        self._controller = Controller(np.array(parameters.start), arm.joint_limits(parameters.limits))
+        limits = arm.joint_limits(parameters.limits)
+        self._controller = Controller(np.array(parameters.start), limits)
         self._lock = threading.Lock()  # between the topic's thread and the loop
         self._elapsed, self._seen = 0.0, rospy.Time.now()
         self._rate = rospy.Rate(parameters.rate, reset=True)
