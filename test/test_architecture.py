@@ -12,9 +12,9 @@ PACKAGE = SOURCE / "youbot_kinematics"
 
 # A module may import those above it and none below it. "youbot_kinematics" is its __init__.py.
 ROS_FREE = """
-    exceptions resources files
-    arm posture singularity intervals selection planar inverse position nearest kinematics kdl
-    bag_reader target_forms targets tour path trajectory differential
+    exceptions resources files colours
+    arm posture singularity intervals selection planar inverse position nearest kinematics kdl shapes
+    bag_reader target_forms targets tour path trajectory track differential
     lines smoothing search route graph itinerary pitch roll resolve
     optimal timing contract controller check parameters solvers planner
     bag_writer export plot make_bag plan_bag plan_reader check_trajectory
@@ -22,7 +22,7 @@ ROS_FREE = """
 """.split()
 ROS_BASED = """
     messages
-    nodes nodes.common nodes.joint_states nodes.arm_simulator nodes.planner nodes.demo
+    nodes nodes.common nodes.joint_states nodes.arm_simulator nodes.planner nodes.tool_trail nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED
 

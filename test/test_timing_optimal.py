@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from youbot_kinematics import YoubotKinematics, arm
-from youbot_kinematics.optimal import DENSE, optimal_rate, peak_load, sample_path, time_path
+from youbot_kinematics.optimal import optimal_rate
 from youbot_kinematics.resolve import resolve
+from youbot_kinematics.timing import DENSE, peak_load, sample_path, time_path
 from youbot_kinematics.trajectory import JointPath, Trajectory, interpolate
 
 VELOCITY, ACCELERATION, DT = np.full(5, np.pi / 2), np.full(5, 3.0), 0.02

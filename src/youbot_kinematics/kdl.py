@@ -33,7 +33,7 @@ class YoubotKDL(Kinematics):
 
     def __init__(self, urdf=None, limits=None):
         path = Path(resource_path("urdf/youbot_arm.urdf") if urdf is None else urdf)
-        joints = _chain_joints(_read_urdf(path), path)
+        joints = chain_joints(read_urdf(path), path)
         moving = [joint for joint in joints if joint.type != "fixed"]
         _check_moving(moving, path)
         self.limits = _urdf_limits(moving, path) if limits is None else arm.joint_limits(limits)
@@ -112,10 +112,10 @@ def _import(name: str):
     try:
         return __import__(name, fromlist=["*"])
     except ImportError as error:
-        raise InputError(f"YoubotKDL needs {name} ({_INSTALL}): {error}") from error
+        raise InputError(f"the URDF needs {name} ({_INSTALL}): {error}") from error
 
 
-def _read_urdf(path: Path):
+def read_urdf(path: Path):
     """The URDF's robot, as urdf_parser_py has it."""
     urdf = _import("urdf_parser_py.urdf")
     try:
@@ -143,7 +143,7 @@ def _refuse_doctype(text: bytes, path: Path):
         raise InputError(f"{path} is not XML: {error}") from error
 
 
-def _chain_joints(robot, path: Path) -> list:
+def chain_joints(robot, path: Path) -> list:
     """The URDF's joints from the base frame to the tool frame."""
     names: list[str] = []
     link = arm.TOOL_FRAME

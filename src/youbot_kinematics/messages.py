@@ -17,15 +17,20 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
 from . import arm
+from .colours import BLACK, KIND_COLOURS, VERMILLION, rgb
 from .contract import Command, command_from_trajectory
+from .shapes import BOX, Shape
+from .track import Track
 from .trajectory import Trajectory
 
 SPHERE_DIAMETER = 0.02  # m
 NUMBER_HEIGHT = 0.035  # m, of the digits
 AXIS_LENGTH = 0.05  # m, of a checkpoint's frame
+SEGMENT_WIDTH = 0.006  # m, of the tool's way
+LABEL_HEIGHT = 0.022  # m, of the letters
+GHOST_OPACITY = 0.3
 
-ORANGE = ColorRGBA(0.95, 0.45, 0.0, 0.9)
-WHITE = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+OPAQUE_BLACK = ColorRGBA(*rgb(BLACK), 1.0)
 AXIS_COLORS = (  # x, y, z, as everywhere in ROS
     ColorRGBA(0.9, 0.2, 0.2, 1.0),
     ColorRGBA(0.2, 0.75, 0.2, 1.0),
@@ -122,9 +127,31 @@ def checkpoint_markers(checkpoints: np.ndarray) -> MarkerArray:
     Args:
         checkpoints: (n, 4, 4) in ``base_link``, m.
     """
-    markers = [Marker(action=Marker.DELETEALL)]
+    markers = []
     for number, T in enumerate(checkpoints, start=1):
         markers += [_sphere(T), _number(T, str(number)), _frame(T)]
+    return _instead_of_before(markers)
+
+
+def segment_markers(tracks: list[Track]) -> MarkerArray:
+    """The tool's way, each segment in the colour of its kind; what is no line is named as well."""
+    markers = []
+    for track in tracks:
+        colour = ColorRGBA(*rgb(KIND_COLOURS[track.segment.kind]), 1.0)
+        markers.append(_way(track.tool, colour))
+        if track.segment.kind != "line":
+            markers.append(_label(track.tool[len(track.tool) // 2], track.segment.kind, colour))
+    return _instead_of_before(markers)
+
+
+def ghost_markers(shapes: list[Shape], poses: np.ndarray) -> MarkerArray:
+    """The arm's shapes at poses (n, 4, 4) in ``base_link``, m, translucent."""
+    return _instead_of_before([_ghost(shape, T) for shape, T in zip(shapes, poses)])
+
+
+def _instead_of_before(markers: list[Marker]) -> MarkerArray:
+    """Markers in ``base_link`` with ids of their own, after one that deletes what was shown."""
+    markers = [Marker(action=Marker.DELETEALL), *markers]
     for i, marker in enumerate(markers):
         marker.id = i
         marker.header.frame_id = arm.BASE_FRAME
@@ -137,7 +164,7 @@ def _sphere(T: np.ndarray) -> Marker:
         type=Marker.SPHERE,
         pose=pose_message(T),
         scale=Vector3(SPHERE_DIAMETER, SPHERE_DIAMETER, SPHERE_DIAMETER),
-        color=ORANGE,
+        color=ColorRGBA(*rgb(VERMILLION), 1.0),
     )
 
 
@@ -149,7 +176,7 @@ def _number(T: np.ndarray, text: str) -> Marker:
         type=Marker.TEXT_VIEW_FACING,
         pose=pose,
         scale=Vector3(z=NUMBER_HEIGHT),
-        color=WHITE,
+        color=OPAQUE_BLACK,
         text=text,
     )
 
@@ -164,5 +191,40 @@ def _frame(T: np.ndarray) -> Marker:
         scale=Vector3(x=0.004),
         points=[point for end in ends for point in (Point(), end)],
         colors=[color for color in AXIS_COLORS for _ in range(2)],
-        color=WHITE,  # RViz takes the colours above, but warns of a marker that is transparent
+        color=OPAQUE_BLACK,  # RViz takes the colours above, but warns of a marker that is transparent
+    )
+
+
+def _way(points: np.ndarray, colour: ColorRGBA) -> Marker:
+    return Marker(
+        ns="segments",
+        type=Marker.LINE_STRIP,
+        pose=pose_message(np.eye(4)),
+        scale=Vector3(x=SEGMENT_WIDTH),
+        points=[Point(*point) for point in points.tolist()],
+        color=colour,
+    )
+
+
+def _label(point: np.ndarray, text: str, colour: ColorRGBA) -> Marker:
+    pose = pose_message(np.eye(4))
+    pose.position = Point(*point.tolist())
+    pose.position.z += LABEL_HEIGHT
+    return Marker(
+        ns="kinds",
+        type=Marker.TEXT_VIEW_FACING,
+        pose=pose,
+        scale=Vector3(z=LABEL_HEIGHT),
+        color=colour,
+        text=text,
+    )
+
+
+def _ghost(shape: Shape, T: np.ndarray) -> Marker:
+    return Marker(
+        ns="goal",
+        type=Marker.CUBE if shape.kind == BOX else Marker.CYLINDER,
+        pose=pose_message(T),
+        scale=Vector3(*shape.size.tolist()),
+        color=ColorRGBA(*shape.colour[:3], GHOST_OPACITY),
     )

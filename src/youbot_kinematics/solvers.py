@@ -56,6 +56,7 @@ def closed_form(tour: Tour, limits: JointLimits, p: Parameters) -> list[JointPat
     Raises:
         PlanningError: a checkpoint is out of reach, or what the way needs is not allowed.
     """
+    limits = limits._replace(velocity=p.velocity_scaling * limits.velocity)  # it minds the time
     options = Options(p.reconfigure, p.detour, p.orientation_weight, p.acceleration)
     points, rotations = tour.checkpoints[:, :3, 3], tour.checkpoints[:, :3, :3]
     return resolve(tour.start, points, limits, tour.demanded, rotations, options)

@@ -33,7 +33,7 @@ class JointPath(NamedTuple):
     kind: str  # as in Segment
     from_checkpoint: int
     to_checkpoint: int
-    s: np.ndarray  # (m,) increasing from 0 to 1; for a line, the fraction of it that is done
+    s: np.ndarray  # (m,) increasing from 0 to 1, in whatever measure the path is even in
     joints: np.ndarray  # (m, 5) rad
 
     def spline(self) -> CubicSpline:

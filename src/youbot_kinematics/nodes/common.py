@@ -14,6 +14,8 @@ from ..exceptions import InputError, YoubotError
 #: Where the controller of the course's simulation listens; relative, so that it can be remapped.
 COMMAND_TOPIC = "EffortJointInterface_trajectory_controller/command"
 JOINT_STATES_TOPIC = "joint_states"
+#: The planned way of the tool, for RViz.
+PATH_TOPIC = "planned_path"
 
 T = TypeVar("T")
 

@@ -1,0 +1,81 @@
+"""The node ``tool_trail``: the way that the tool has really gone, for RViz.
+
+It comes from the joint states alone, so that it can be held against what was planned. A new plan
+begins a new trail.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Path
+from sensor_msgs.msg import JointState
+
+from ..kinematics import YoubotKinematics
+from ..messages import joints_from_message, path_message
+from ..parameters import Checked, parameter
+from .common import JOINT_STATES_TOPIC, PATH_TOPIC, read_parameters, run_node
+
+
+@dataclass(frozen=True)
+class TrailParameters(Checked):
+    """What the trail can be told."""
+
+    spacing: float = parameter(
+        0.003, "how far the tool goes from one point of the trail to the next, m", at_least=0.0005
+    )
+    points: int = parameter(
+        3000, "length of the trail; its oldest points go first", at_least=2, at_most=100_000
+    )
+    rate: float = parameter(5.0, "how often a trail that grows is published, Hz", at_least=0.1)
+
+
+class ToolTrail:
+    """Listens to the joint states, and publishes ``tool_trail``."""
+
+    def __init__(self, parameters: TrailParameters):
+        self._parameters = parameters
+        self._kinematics = YoubotKinematics()
+        self._lock = threading.Lock()  # between the topics' threads and the loop
+        self._poses: list[np.ndarray] = []
+        self._grown = False
+        self._trail = rospy.Publisher("tool_trail", Path, queue_size=1, latch=True)
+        rospy.Subscriber(JOINT_STATES_TOPIC, JointState, self._take, queue_size=10)
+        rospy.Subscriber(PATH_TOPIC, Path, self._begin, queue_size=1)
+
+    def spin(self) -> None:
+        """Publishes the trail whenever it has grown, until ROS shuts down."""
+        rate = rospy.Rate(self._parameters.rate, reset=True)
+        while not rospy.is_shutdown():
+            with self._lock:
+                poses, self._grown = (list(self._poses) if self._grown else None), False
+            if poses is not None:
+                self._trail.publish(path_message(poses))
+            rate.sleep()
+
+    def _take(self, message: JointState) -> None:
+        joints = joints_from_message(message)
+        if joints is None:
+            return
+        T = self._kinematics.forward_kinematics(joints)
+        with self._lock:
+            if self._poses and _distance(T, self._poses[-1]) < self._parameters.spacing:
+                return
+            self._poses = [*self._poses[1 - self._parameters.points :], T]
+            self._grown = True
+
+    def _begin(self, _path: Path) -> None:
+        with self._lock:
+            self._poses, self._grown = self._poses[-1:], True
+
+
+def _distance(T_a: np.ndarray, T_b: np.ndarray) -> float:
+    """How far the origins of two poses are apart, m."""
+    return float(np.linalg.norm(T_a[:3, 3] - T_b[:3, 3]))
+
+
+def main() -> None:
+    run_node("tool_trail", lambda: ToolTrail(read_parameters(TrailParameters.from_dict)).spin())
