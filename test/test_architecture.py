@@ -15,14 +15,14 @@ ROS_FREE = """
     exceptions resources files colours
     arm posture singularity intervals selection planar inverse position nearest kinematics kdl shapes
     bag_reader target_forms targets tour path trajectory track differential
-    lines smoothing search route graph itinerary pitch roll resolve
+    lines smoothing search route graph itinerary pitch roll resolve explain
     optimal timing contract controller check parameters solvers planner
     bag_writer export plot make_bag plan_bag plan_reader check_trajectory
     youbot_kinematics
 """.split()
 ROS_BASED = """
     messages
-    nodes nodes.common nodes.joint_states nodes.arm_simulator nodes.planner nodes.tool_trail nodes.demo
+    nodes nodes.common nodes.joint_states nodes.arm_simulator nodes.view nodes.planner nodes.tool_trail nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED
 

@@ -94,6 +94,7 @@ def as_dict(plan) -> dict:
                     "end": segment.end,
                     "from": segment.from_checkpoint,
                     "to": segment.to_checkpoint,
+                    "reason": segment.reason,
                 }
                 for segment in plan.trajectory.segments
             ],

@@ -64,7 +64,16 @@ def summary(plan: Plan) -> list[str]:
         f"waypoints           {len(plan.poses)}",
         f"trajectory points   {len(plan.trajectory.times)}",
         *plan.report.lines(),
+        *(_about(segment) for segment in plan.trajectory.segments if segment.kind != "line"),
     ]
+
+
+def _about(segment) -> str:
+    """A line about a segment that follows no line of the tour: when, where and why."""
+    a, b = segment.from_checkpoint, segment.to_checkpoint
+    where = f"from checkpoint {a} to {b}" if a != b else f"at checkpoint {a}"
+    when = f"{segment.start:.2f} s to {segment.end:.2f} s"
+    return f"{segment.kind:<19} {when}, {where}: {segment.reason}"
 
 
 def _run(options) -> None:

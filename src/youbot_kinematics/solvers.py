@@ -9,6 +9,7 @@ import numpy as np
 from .arm import JointLimits
 from .differential import line_path
 from .exceptions import PlanningError
+from .explain import explained
 from .kdl import YoubotKDL
 from .kinematics import YoubotKinematics
 from .parameters import Parameters
@@ -59,7 +60,8 @@ def closed_form(tour: Tour, limits: JointLimits, p: Parameters) -> list[JointPat
     limits = limits._replace(velocity=p.velocity_scaling * limits.velocity)  # it minds the time
     options = Options(p.reconfigure, p.detour, p.orientation_weight, p.acceleration)
     points, rotations = tour.checkpoints[:, :3, 3], tour.checkpoints[:, :3, :3]
-    return resolve(tour.start, points, limits, tour.demanded, rotations, options)
+    paths = resolve(tour.start, points, limits, tour.demanded, rotations, options)
+    return explained(paths, points, limits)
 
 
 SOLVERS: dict[str, Callable] = {"pseudo_inverse": pseudo_inverse, "closed_form": closed_form}

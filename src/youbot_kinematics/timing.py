@@ -46,8 +46,16 @@ def time_paths(paths, velocity, acceleration, dt: float, timing: str = "optimal"
         samples = time_path(path, velocity, acceleration, dt, RATES[timing])
         points.append(samples[:, 1:])
         end = steps + samples.shape[1] - 1
+        begin_time, end_time = round(steps * dt, 9), round(end * dt, 9)
         segments.append(
-            Segment(path.kind, steps * dt, end * dt, path.from_checkpoint, path.to_checkpoint)
+            Segment(
+                path.kind,
+                begin_time,
+                end_time,
+                path.from_checkpoint,
+                path.to_checkpoint,
+                path.reason,
+            )
         )
         steps = end
     positions, velocities, accelerations = np.concatenate(points, axis=1)

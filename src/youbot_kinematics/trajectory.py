@@ -22,6 +22,7 @@ class Segment(NamedTuple):
     end: float  # s
     from_checkpoint: int
     to_checkpoint: int
+    reason: str = ""  # why it is there, where that needs one
 
 
 class JointPath(NamedTuple):
@@ -35,6 +36,7 @@ class JointPath(NamedTuple):
     to_checkpoint: int
     s: np.ndarray  # (m,) increasing from 0 to 1, in whatever measure the path is even in
     joints: np.ndarray  # (m, 5) rad
+    reason: str = ""  # why there is such a path, where that needs one
 
     def spline(self) -> CubicSpline:
         """The joints (rad) as a function of s, twice continuously differentiable."""

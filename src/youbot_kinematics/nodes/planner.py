@@ -12,28 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 import rospy
-from nav_msgs.msg import Path
 from std_srvs.srv import Trigger, TriggerResponse
 from trajectory_msgs.msg import JointTrajectory
-from visualization_msgs.msg import MarkerArray
 
 from .. import arm
 from ..exceptions import InputError, YoubotError
-from ..messages import (
-    checkpoint_markers,
-    ghost_markers,
-    path_message,
-    segment_markers,
-    trajectory_message,
-)
+from ..messages import trajectory_message
 from ..parameters import Parameters, parameter
 from ..plan_bag import summary
 from ..planner import Plan, plan
-from ..shapes import arm_shapes, shape_poses
 from ..targets import load_targets
-from ..track import tool_tracks
-from .common import COMMAND_TOPIC, PATH_TOPIC, read_parameters, run_node, wait_for
+from .common import COMMAND_TOPIC, read_parameters, run_node, wait_for
 from .joint_states import JointStates
+from .view import View
 
 #: How far the arm may be from a trajectory's first point when it is sent, rad.
 START_TOLERANCE = 0.02
@@ -62,35 +53,6 @@ class NodeParameters(Parameters):
         super().__post_init__()
         if not self.bag:
             raise InputError("parameter bag is required: the file with the targets (_bag:=FILE)")
-
-
-class View:
-    """What RViz shows of a plan: checkpoints, path, segments, and the arm's ghost at the goal.
-
-    The topics are latched: whoever looks later sees it as well.
-    """
-
-    def __init__(self):
-        def latched(name, kind):
-            return rospy.Publisher(name, kind, queue_size=1, latch=True)
-
-        self._checkpoints = latched("checkpoint_positions", MarkerArray)
-        self._path = latched(PATH_TOPIC, Path)
-        self._segments = latched("planned_segments", MarkerArray)
-        self._goal = latched("goal_arm", MarkerArray)
-
-    def show(self, planned: Plan) -> None:
-        """Publishes a plan, in the place of the one before."""
-        self._checkpoints.publish(checkpoint_markers(planned.checkpoints[1:]))
-        self._path.publish(path_message(planned.poses))
-        self._segments.publish(segment_markers(tool_tracks(planned.trajectory)))
-        try:
-            shapes = arm_shapes()
-        except InputError as error:  # a plan is as good without
-            rospy.logwarn("the arm at the goal is not shown: %s", error)
-            return
-        poses = shape_poses(shapes, planned.trajectory.positions[-1])
-        self._goal.publish(ghost_markers(shapes, poses))
 
 
 class PlannerNode:
