@@ -12,10 +12,11 @@ PACKAGE = SOURCE / "youbot_kinematics"
 
 # A module may import those above it and none below it. "youbot_kinematics" is its __init__.py.
 ROS_FREE = """
-    exceptions resources files colours
+    exceptions resources files colours progress progress_bar
     arm posture singularity intervals selection planar inverse position nearest kinematics kdl shapes
     bag_reader target_forms targets tour path trajectory track differential
-    lines smoothing search route graph itinerary pitch roll resolve explain
+    resolve.lines resolve.smoothing resolve.search resolve.route resolve.graph resolve.itinerary
+    resolve.pitch resolve.roll resolve resolve.explain
     optimal timing contract controller check parameters solvers planner
     bag_writer export plot make_bag plan_bag plan_reader check_trajectory
     youbot_kinematics

@@ -3,8 +3,8 @@
 import numpy as np
 
 from youbot_kinematics import YoubotKinematics, joint_limits
-from youbot_kinematics.explain import explained, why_not_as_it_is
 from youbot_kinematics.resolve import resolve
+from youbot_kinematics.resolve.explain import explained, why_not_as_it_is
 
 ARM = YoubotKinematics()
 LIMITS = joint_limits("urdf")

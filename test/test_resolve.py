@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from youbot_kinematics import YoubotKinematics, arm
 from youbot_kinematics.exceptions import PlanningError
-from youbot_kinematics.graph import lay_out
-from youbot_kinematics.lines import straight_line
 from youbot_kinematics.resolve import Options, resolve
-from youbot_kinematics.search import (
+from youbot_kinematics.resolve.graph import lay_out
+from youbot_kinematics.resolve.lines import straight_line
+from youbot_kinematics.resolve.search import (
     APPROACH_COST,
     DETOUR,
     REACH,

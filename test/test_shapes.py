@@ -8,10 +8,10 @@ import pytest
 pytest.importorskip("PyKDL")
 pytest.importorskip("urdf_parser_py")
 
-from youbot_kinematics.arm import LIMITS  # noqa: E402
-from youbot_kinematics.kdl import YoubotKDL  # noqa: E402
-from youbot_kinematics.resources import resource_path  # noqa: E402
-from youbot_kinematics.shapes import arm_shapes, shape_poses  # noqa: E402
+from youbot_kinematics.arm import LIMITS
+from youbot_kinematics.kdl import YoubotKDL
+from youbot_kinematics.resources import resource_path
+from youbot_kinematics.shapes import arm_shapes, shape_poses
 
 
 def visuals():

@@ -1,6 +1,6 @@
 """How far long work is: loops say what they do, and whoever runs them decides what becomes of it.
 
-A loop over ``track(items, "doing this")`` is the loop over ``items`` and nothing else, until a
+A loop over ``with_progress(items, "doing this", n)`` is the loop over ``items`` and nothing else, until a
 listener is set around the work::
 
     with listened_by(print):
@@ -20,7 +20,7 @@ T = TypeVar("T")
 _listener: ContextVar[Optional[Listener]] = ContextVar("listener", default=None)
 
 
-def track(items: Iterable[T], what: str, total: int) -> Iterator[T]:
+def with_progress(items: Iterable[T], what: str, total: int) -> Iterator[T]:
     """Yields ``total`` items, and tells the listener, if there is one, how many are done."""
     for done, item in enumerate(items):
         _tell(what, done, total)

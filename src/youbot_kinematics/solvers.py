@@ -9,11 +9,11 @@ import numpy as np
 from .arm import JointLimits
 from .differential import line_path
 from .exceptions import PlanningError
-from .explain import explained
 from .kdl import YoubotKDL
 from .kinematics import YoubotKinematics
 from .parameters import Parameters
 from .resolve import Options, resolve
+from .resolve.explain import explained
 from .trajectory import JointPath
 
 #: The pseudo-inverse stays this far inside of the limits, so that the spline through its waypoints,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import arm
+from .. import arm
 from .itinerary import Itinerary
 from .smoothing import merged, roughness, solve_box
 

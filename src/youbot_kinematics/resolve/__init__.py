@@ -17,8 +17,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.spatial.transform import Rotation, Slerp
 
-from . import arm
-from .exceptions import PlanningError
+from .. import arm
+from ..exceptions import PlanningError
+from ..trajectory import JointPath
 from .graph import Tour, lay_out
 from .itinerary import DETOUR_MOVE, LINE, NONE, RECONFIGURATION, Itinerary, Run, runs_of
 from .itinerary import itinerary as line_up
@@ -27,7 +28,6 @@ from .pitch import joints_on, smooth_pitch
 from .roll import smooth_roll, wanted_roll
 from .route import Route, route_along
 from .search import Walk, best_walk
-from .trajectory import JointPath
 
 # Joints are computed at so many points of a step between waypoints; a spline runs through them.
 _SAMPLES_PER_STEP = 4
@@ -46,7 +46,12 @@ class Options(NamedTuple):
 
 
 def resolve(
-    start, points, limits: arm.JointLimits, exact=None, rotations=None, options=Options()  # noqa: B008
+    start,
+    points,
+    limits: arm.JointLimits,
+    exact=None,
+    rotations=None,
+    options=Options(),  # noqa: B008
 ) -> list[JointPath]:
     """Finds the best joint paths along a tour.
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import arm
-from .exceptions import PlanningError
+from .. import arm
+from ..exceptions import PlanningError
 from .lines import Line
 from .route import SAME_PLANE, Route, branch_of, cell_of, pitch_of, route_along, standings
 from .search import DETOUR, SAME, SMOOTH, SWAPPED, TURNED, Graph, smooth_costs

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import arm
-from .inverse import plane_joints, wrap_into_limits
-from .kinematics import YoubotKinematics
-from .posture import configuration
-from .trajectory import JointPath
+from .. import arm
+from ..inverse import plane_joints, wrap_into_limits
+from ..kinematics import YoubotKinematics
+from ..posture import configuration
+from ..trajectory import JointPath
 
 # The way ahead is looked at every so many m, at so many pitches of the tool.
 _STEP, _PITCHES = 0.002, 128
@@ -25,9 +25,7 @@ def explained(paths: list[JointPath], points, limits: arm.JointLimits) -> list[J
     """
     moves = [i for i, path in enumerate(paths) if path.kind in ("approach", "reconfiguration")]
     ends = [*(paths[i].to_checkpoint for i in moves[1:]), len(points) - 1]
-    paths = [
-        path._replace(reason=_NO_POSTURE) if path.kind == "detour" else path for path in paths
-    ]
+    paths = [path._replace(reason=_NO_POSTURE) if path.kind == "detour" else path for path in paths]
     for i, end in zip(moves, ends):
         q, following = paths[i].joints[0], paths[i].from_checkpoint + 1
         here = YoubotKinematics(limits).forward_kinematics(q)[:3, 3]

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import arm
-from .inverse import plane_joints, wrap_into_limits
+from .. import arm
+from ..inverse import plane_joints, wrap_into_limits
 from .lines import Line
 
 # The search keeps this far from the joint limits along a line (rad), and closes up to them towards

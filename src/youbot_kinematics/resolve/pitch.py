@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import arm
+from .. import arm
 from .itinerary import Itinerary
 from .route import arm_joints
 from .smoothing import banded_product, merged, roughness, solve_box
