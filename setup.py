@@ -17,11 +17,12 @@ setup(
     package_dir={"": "src"},
     data_files=[
         (f"share/youbot_kinematics/{folder}", sorted(glob(f"{folder}/*")))
-        for folder in ("bags", "config", "launch", "urdf")
+        for folder in ("bags", "config", "launch", "page", "urdf")
     ],
     install_requires=Path("requirements.txt").read_text().splitlines(),
     extras_require={
         "plot": ["matplotlib>=3.6"],
+        "report": ["plotly", "urdf-parser-py"],
         "kdl": ["urdf-parser-py"],  # and PyKDL, which no wheel has: Debian's python3-pykdl
     },
     python_requires=">=3.8",

@@ -30,14 +30,13 @@ def duration(value):
 
 
 def table(header, rows):
-    """Prints rows of texts or numbers in columns: the first on the left, the others on the right."""
+    """Prints rows of texts or numbers in columns: the first one left-aligned, the others right."""
     cells = [[str(cell) for cell in row] for row in (header, *rows)]
     widths = [max(map(len, column)) for column in zip(*cells)]
-    for number, row in enumerate(cells):
-        first, *others = (cell.rjust(width) for cell, width in zip(row, widths))
-        print("  ".join([row[0].ljust(widths[0]), *others]), flush=True)
-        if number == 0:
-            print("  ".join("-" * width for width in widths))
+    cells.insert(1, ["-" * width for width in widths])
+    for name, *others in cells:
+        aligned = [cell.rjust(width) for cell, width in zip(others, widths[1:])]
+        print("  ".join([name.ljust(widths[0]), *aligned]), flush=True)
 
 
 def write(name, results):

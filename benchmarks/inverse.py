@@ -1,6 +1,6 @@
 """Inverse kinematics beside its peers: success, solutions and time, on the same random poses.
 
-Run it where the peers are installed (``requirements-peers.txt``); those that are not are left out,
+Run it where the peers are installed (``./run bench``); those that are not are left out,
 with a line that says so. A pose counts as solved if one of a solver's answers gives it back to
 1e-6 with all joints inside the limits.
 """

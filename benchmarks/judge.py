@@ -1,7 +1,7 @@
 """An independent judge of trajectories: what a plan's JSON says, against KDL and SciPy.
 
-Nothing of the package takes part: the chain is built here from the URDF's own numbers by PyKDL, the
-controller's quintic is SciPy's ``BPoly.from_derivatives``, and the limits are read from the profile.
+No code of the package takes part: the chain is built here from the URDF's own numbers by PyKDL, and
+the controller's quintic is SciPy's ``BPoly.from_derivatives``. The limits are the caller's.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from xml.etree import ElementTree
 
 import numpy as np
-import PyKDL as kdl
+import PyKDL
 from scipy.interpolate import BPoly
 
 RATE = 1000  # Hz
@@ -22,22 +22,23 @@ def chain_from_urdf(path, base="base_link", tool="arm_link_ee"):
     while tool != base:
         links.append((tool, joints[tool]))
         tool = joints[tool].find("parent").get("link")
-    chain = kdl.Chain()
+    chain = PyKDL.Chain()
     for name, joint in reversed(links):
         origin = joint.find("origin")
         xyz, rpy = (_floats(origin, key) for key in ("xyz", "rpy"))
-        frame = kdl.Frame(kdl.Rotation.RPY(*rpy), kdl.Vector(*xyz))
+        frame = PyKDL.Frame(PyKDL.Rotation.RPY(*rpy), PyKDL.Vector(*xyz))
         if joint.get("type") == "fixed":
-            moving = kdl.Joint(name, kdl.Joint.Fixed)
+            moving = PyKDL.Joint(name, PyKDL.Joint.Fixed)
         else:
-            axis = frame.M * kdl.Vector(*_floats(joint.find("axis"), "xyz"))
-            moving = kdl.Joint(name, frame.p, axis, kdl.Joint.RotAxis)
-        chain.addSegment(kdl.Segment(name, moving, frame))
+            axis = frame.M * PyKDL.Vector(*_floats(joint.find("axis"), "xyz"))
+            moving = PyKDL.Joint(name, frame.p, axis, PyKDL.Joint.RotAxis)
+        chain.addSegment(PyKDL.Segment(name, moving, frame))
     return chain
 
 
 def _floats(element, key):
-    return [float(x) for x in (element.get(key) or "0 0 0").split()] if element is not None else [0.0] * 3
+    text = "0 0 0" if element is None else element.get(key, "0 0 0")
+    return [float(x) for x in text.split()]
 
 
 class Judge:
@@ -45,16 +46,16 @@ class Judge:
 
     Args:
         urdf: path of the arm's URDF.
-        limits: by profile, an object with ``lower``, ``upper`` and ``velocity``, (5,).
+        limits: profile -> an object with ``lower``, ``upper`` and ``velocity``, (5,) each.
     """
 
     def __init__(self, urdf, limits):
         self.chain, self.limits = chain_from_urdf(urdf), limits
-        self.solver = kdl.ChainFkSolverPos_recursive(self.chain)
+        self.solver = PyKDL.ChainFkSolverPos_recursive(self.chain)
 
     def tool(self, q):
-        """Positions (m, 3) and orientations (m, 3, 3) of the tool for joints (m, 5)."""
-        array, frame, positions = kdl.JntArray(5), kdl.Frame(), np.empty((len(q), 3))
+        """Positions (m, 3) of the tool in the base for joints (m, 5)."""
+        array, frame, positions = PyKDL.JntArray(5), PyKDL.Frame(), np.empty((len(q), 3))
         for row, joints in enumerate(q.tolist()):
             for i, value in enumerate(joints):
                 array[i] = value

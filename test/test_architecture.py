@@ -13,17 +13,20 @@ PACKAGE = SOURCE / "youbot_kinematics"
 # A module may import those above it and none below it. "youbot_kinematics" is its __init__.py.
 ROS_FREE = """
     exceptions resources files colours progress progress_bar
-    arm posture singularity intervals selection planar inverse position nearest kinematics kdl shapes
-    bag_reader target_forms targets tour path trajectory track differential
+    arm posture singularity intervals selection planar inverse position nearest kinematics kdl
+    shapes
+    bag_records rosbag1 bag_reader target_forms targets tour path trajectory track differential
     resolve.lines resolve.smoothing resolve.search resolve.route resolve.graph resolve.itinerary
     resolve.pitch resolve.roll resolve resolve.explain
-    optimal timing contract controller check parameters solvers planner
-    bag_writer export plot make_bag plan_bag plan_reader check_trajectory
+    coursework optimal timing contract controller check parameters interface solvers planner
+    bag_writer export plot page make_bag plan_job plan_bags plan_options plan_bag
+    plan_reader check_trajectory
     youbot_kinematics
 """.split()
 ROS_BASED = """
     messages
-    nodes nodes.common nodes.joint_states nodes.arm_simulator nodes.view nodes.planner nodes.tool_trail nodes.demo
+    nodes nodes.master nodes.common nodes.frames nodes.joint_states nodes.arm_simulator nodes.view
+    nodes.planner nodes.tool_trail nodes.joint_sliders nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED
 
@@ -32,7 +35,7 @@ ROS = """
     roslib rosmaster rosnode rospkg rospy rostest rostopic sensor_msgs std_msgs std_srvs tf tf2_py
     tf2_ros trajectory_msgs visualization_msgs
 """.split()
-LOADED_ON_USE = "PyKDL fast_tsp matplotlib urdf_parser_py".split()
+LOADED_ON_USE = "PyKDL fast_tsp matplotlib plotly urdf_parser_py".split()
 
 
 def name_of(path):

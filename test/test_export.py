@@ -118,3 +118,23 @@ def test_a_plan_that_fails_to_be_written_leaves_nothing_behind(planned, tmp_path
 
 def _with_trajectory(planned, trajectory):
     return type(planned)(**{**vars(planned), "trajectory": trajectory})
+
+
+def test_pandas_reads_csv_and_json(planned, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    write_plan(tmp_path / "plan.csv", planned)
+    write_plan(tmp_path / "plan.json", planned)
+    table = pandas.read_csv(tmp_path / "plan.csv")
+    assert list(table.columns) == csv_header() and all(kind == "float64" for kind in table.dtypes)
+    np.testing.assert_allclose(table["time_s"], planned.trajectory.times, atol=1e-9)
+    points = pandas.DataFrame(json.loads((tmp_path / "plan.json").read_text())["points"])
+    np.testing.assert_array_equal(np.stack(points["positions"]), planned.trajectory.positions)
+
+
+def test_names_in_csv_and_json_are_ones_that_matlab_takes(planned, tmp_path):
+    """MATLAB's names: a letter, then letters, digits and underscores, 63 at most."""
+    write_plan(tmp_path / "plan.json", planned)
+    names = csv_header()
+    json.loads((tmp_path / "plan.json").read_text(), object_hook=names.extend)
+    for name in names:
+        assert name.isascii() and name.isidentifier() and name[0] != "_" and len(name) <= 63

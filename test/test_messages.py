@@ -9,9 +9,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from youbot_kinematics import JOINT_NAMES, joint_limits
+from youbot_kinematics.colours import KIND_COLOURS, rgb
 from youbot_kinematics.contract import shape_problems, trajectory_from_command
 from youbot_kinematics.kinematics import YoubotKinematics
-from youbot_kinematics.trajectory import Trajectory
+from youbot_kinematics.shapes import arm_shapes, shape_poses
+from youbot_kinematics.track import Track
+from youbot_kinematics.trajectory import Segment, Trajectory
 
 genpy = pytest.importorskip("genpy")
 for package in ("geometry", "nav", "sensor", "std", "trajectory", "visualization"):
@@ -135,6 +138,48 @@ class TestMarkers:
 
     def test_no_checkpoints_clear_the_view(self):
         assert len(messages.checkpoint_markers(np.empty((0, 4, 4))).markers) == 1
+
+
+class TestWhatElseIsSeen:
+    @pytest.fixture
+    def tracks(self):
+        way = np.linspace([0.1, 0.2, 0.3], [0.3, 0.2, 0.1], 9)
+        segments = [Segment(kind, i, i + 1.0, i, i + 1) for i, kind in enumerate(KIND_COLOURS)]
+        return [Track(segment, segment.start + np.arange(9) / 8, way) for segment in segments]
+
+    def test_every_segment_is_a_line_in_the_colour_of_its_kind(self, tracks):
+        markers = over_the_wire(messages.segment_markers(tracks)).markers
+        lines = [m for m in markers if m.type == Marker.LINE_STRIP]
+        for track, line in zip(tracks, lines):
+            colour = [line.color.r, line.color.g, line.color.b]
+            np.testing.assert_allclose(colour, rgb(KIND_COLOURS[track.segment.kind]), atol=1e-6)
+            np.testing.assert_allclose([[p.x, p.y, p.z] for p in line.points], track.tool)
+        assert len(lines) == len(tracks)
+        assert markers[0].action == Marker.DELETEALL
+        assert len({m.id for m in markers}) == len(markers)
+
+    def test_what_is_no_line_is_named(self, tracks):
+        markers = messages.segment_markers(tracks).markers
+        assert {m.text for m in markers if m.text} == set(KIND_COLOURS) - {"line"}
+
+    def test_the_ghost_has_the_shapes_of_the_arm_and_is_translucent(self):
+        pytest.importorskip("urdf_parser_py")
+        shapes = arm_shapes()
+        poses = shape_poses(shapes, [1.0, 1.0, -2.0, 1.0, 1.0])
+        first, *markers = over_the_wire(messages.ghost_markers(shapes, poses)).markers
+        assert first.action == Marker.DELETEALL
+        for marker, shape, T in zip(markers, shapes, poses):
+            p, size = marker.pose.position, marker.scale
+            np.testing.assert_allclose([p.x, p.y, p.z], T[:3, 3])
+            np.testing.assert_allclose([size.x, size.y, size.z], shape.size)
+            assert 0 < marker.color.a < 0.5 and marker.header.frame_id == "base_link"
+        assert {m.type for m in markers} == {Marker.CUBE, Marker.CYLINDER}
+
+    def test_a_trail_has_a_bead_for_each_point_and_may_be_empty(self):
+        points = np.arange(12.0).reshape(4, 3)
+        marker = over_the_wire(messages.trail_marker(points))
+        assert [[p.x, p.y, p.z] for p in marker.points] == points.tolist()
+        assert messages.trail_marker(np.empty((0, 3))).points == []
 
 
 def test_a_path_holds_the_poses_in_the_base_frame():

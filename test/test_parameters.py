@@ -33,6 +33,10 @@ def test_an_integer_will_do_for_a_number():
         ({"start": [0, 0]}, "five finite numbers"),
         ({"start": [0, 0, 0, 0, float("inf")]}, "five finite numbers"),
         ({"start": "home"}, "five numbers"),
+        ({"solver": "pseudo_inverse", "checkpoint": "pose"}, "solver and checkpoint contradict"),
+        ({"solver": "pseudo_inverse", "checkpoint": "joints"}, "solver and checkpoint contradict"),
+        ({"solver": "pseudo_inverse", "orientation_weight": 1.0}, "orientation_weight contradict"),
+        ({"solver": "closed_form", "kinematics": "kdl"}, "solver and kinematics contradict"),
     ],
 )
 def test_a_bad_value_is_refused_in_a_sentence(values, sentence):

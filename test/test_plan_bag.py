@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from youbot_kinematics import plan_bag
+from youbot_kinematics import plan_bag, plan_job, plan_options
 from youbot_kinematics.make_bag import make_bag
 from youbot_kinematics.parameters import Parameters
 from youbot_kinematics.targets import Targets
@@ -63,7 +63,7 @@ def test_a_plan_is_written_in_every_format_and_drawn(bag, tmp_path, capsys):
 
 
 def test_every_parameter_of_the_planner_is_an_option_with_its_default():
-    options = vars(plan_bag._parser().parse_args(["some.bag"]))
+    options = vars(plan_options.parser().parse_args(["some.bag"]))
     assert {f.name: options[f.name] for f in fields(Parameters)} == vars(Parameters())
 
 
@@ -130,7 +130,7 @@ def test_targets_that_cannot_be_visited_end_in_status_1(tmp_path, capsys):
 
 def test_files_that_exist_are_refused_before_any_planning(bag, tmp_path, monkeypatch, capsys):
     (tmp_path / "plan.json").write_text("mine")
-    monkeypatch.setattr(plan_bag, "plan", lambda *_: pytest.fail("planned for nothing"))
+    monkeypatch.setattr(plan_job, "plan", lambda *_: pytest.fail("planned for nothing"))
     assert plan_bag.main([bag, *START, "--output", str(tmp_path / "plan.json")]) == 2
     assert "--force" in capsys.readouterr().err
 
@@ -139,6 +139,42 @@ def test_an_interruption_ends_in_status_130(bag, monkeypatch, capsys):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(plan_bag, "plan", interrupt)
+    monkeypatch.setattr(plan_bag, "plan_job", interrupt)
     assert plan_bag.main([bag, *START]) == 130
     assert capsys.readouterr().err == "plan_bag: interrupted\n"
+
+
+def test_a_plan_on_standard_output_is_nothing_but_the_plan(bag, capfd):
+    assert plan_bag.main([bag, *START, "--output", "-"]) == 0
+    printed = capfd.readouterr()
+    assert json.loads(printed.out)["order"] and "duration" in printed.err
+
+
+@pytest.mark.parametrize(("name", "start"), [("-.csv", b"time_s,"), ("-.bag", b"#ROSBAG V2.0")])
+def test_standard_output_takes_every_format(bag, capfdbinary, name, start):
+    assert plan_bag.main([bag, *START, "--output", name]) == 0
+    assert capfdbinary.readouterr().out.startswith(start)
+
+
+def test_a_reader_that_has_seen_enough_is_no_error(bag):
+    command = [sys.executable, str(ROOT / "scripts/plan_bag"), bag, *START, "--output", "-"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert b"Traceback" not in process.stderr.read()
+    assert process.returncode == 0
+
+
+@pytest.mark.parametrize("outputs", [["a.json", "./a.json"], ["-", "-.csv"]])
+def test_the_same_output_twice_is_refused_before_any_planning(bag, capsys, monkeypatch, outputs):
+    monkeypatch.setattr(plan_job, "plan", lambda *_: pytest.fail("planned for nothing"))
+    names = [word for output in outputs for word in ("--output", output)]
+    assert plan_bag.main([bag, *START, *names]) == 2
+    assert "twice" in capsys.readouterr().err
+
+
+def test_the_help_names_every_exit_status_format_and_parameter():
+    text = plan_options.parser().format_help()
+    for word in (".json", ".csv", ".bag", "{folder}", "0 planned, 1 there is no plan, 2 bad input"):
+        assert word in text
+    for f in fields(Parameters):
+        assert "--" + f.name.replace("_", "-") in text

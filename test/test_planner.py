@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from youbot_kinematics import InputError, PlanningError, YoubotKinematics
+from youbot_kinematics.make_bag import random_joints
 from youbot_kinematics.parameters import Parameters
 from youbot_kinematics.planner import plan
 from youbot_kinematics.targets import Targets
@@ -141,3 +142,17 @@ def test_an_unreachable_target_is_refused_with_where_it_is(solver, sentence):
     far[:3, 3] = [0.9, 0, 0.3]
     with pytest.raises(PlanningError, match=sentence):
         plan(Targets.from_poses([far]), START, Parameters(solver=solver))
+
+
+def test_more_targets_or_waypoints_than_can_be_planned_are_refused_at_once():
+    many = Targets.from_joints(random_joints(100_000, 1, ARM.limits))
+    with pytest.raises(InputError, match="100,000 targets: at most 2,000"):
+        plan(many, START)
+    few = Targets.from_joints(random_joints(100, 1, ARM.limits))
+    with pytest.raises(InputError, match="1,000,100 waypoints: at most 200,000"):
+        plan(few, START, Parameters(num_points=10_000))
+
+
+def test_an_orientation_to_follow_is_not_left_to_the_pseudo_inverse():
+    planned = plan(TARGETS, START, Parameters(orientation_weight=1.0))
+    assert planned.solver == "closed_form" and "orientation_weight" in planned.solver_reason

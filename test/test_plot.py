@@ -1,11 +1,13 @@
 """Pictures of plans are drawn, with what a person needs to read them."""
 
 import sys
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
+from youbot_kinematics.colours import KIND_COLOURS
 from youbot_kinematics.exceptions import InputError
 from youbot_kinematics.planner import plan
 from youbot_kinematics.plot import draw, plot_plan
@@ -48,6 +50,29 @@ def test_targets_are_numbered_in_visiting_order(planned):
     assert [text.get_text() for text in tour.texts] == ["1", "2"]
     drawn_at = tour.texts[0].get_position_3d()
     np.testing.assert_allclose(drawn_at[:2], planned.targets.poses[1, :2, 3])
+
+
+def test_the_tools_way_is_coloured_by_kind_and_the_legend_names_each_once(planned):
+    first, *others = planned.trajectory.segments
+    segments = (first._replace(kind="approach"), first._replace(kind="detour"), *others)
+    trajectory = planned.trajectory._replace(segments=segments)
+    (tour,) = [a for a in draw(replace(planned, trajectory=trajectory)).axes if a.name == "3d"]
+    colours = {line.get_label(): line.get_color() for line in tour.lines}
+    for kind in ("approach", "detour", "line"):
+        assert colours[f"tool: {kind}"] == KIND_COLOURS[kind]
+    names = [text.get_text() for text in tour.get_legend().get_texts()]
+    assert len(names) == len(set(names))
+
+
+def test_a_checkpoint_is_numbered_where_it_is_reached_and_nowhere_else(planned):
+    last = planned.trajectory.segments[-1]
+    middle = (last.start + last.end) / 2
+    parts = (last._replace(end=middle), last._replace(start=middle, kind="reconfiguration"))
+    trajectory = planned.trajectory._replace(segments=(*planned.trajectory.segments[:-1], *parts))
+    figure = draw(replace(planned, trajectory=trajectory))
+    (joint_1,) = [axes for axes in figure.axes if axes.get_ylabel() == "joint 1 (rad)"]
+    assert [text.get_text() for text in joint_1.texts] == ["1", "2"]
+    assert joint_1.texts[-1].xy[0] == last.end
 
 
 def test_what_an_arm_did_is_drawn_over_what_was_planned(planned, recorded):

@@ -5,13 +5,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-pytest.importorskip("PyKDL")
-pytest.importorskip("urdf_parser_py")
-
 from youbot_kinematics.arm import LIMITS
 from youbot_kinematics.kdl import YoubotKDL
 from youbot_kinematics.resources import resource_path
 from youbot_kinematics.shapes import arm_shapes, shape_poses
+
+pytest.importorskip("PyKDL")
+pytest.importorskip("urdf_parser_py")
 
 
 def visuals():

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from broken_bags import write_topics
 from rosbags.rosbag1 import Writer
 from scipy.spatial.transform import Rotation
 
 from youbot_kinematics import arm
-from youbot_kinematics.bag_writer import COMPRESSIONS, make, make_header, noetic_types, write_bag
+from youbot_kinematics.bag_writer import COMPRESSIONS, make, make_header, write_bag
 from youbot_kinematics.exceptions import BagError, InputError
 from youbot_kinematics.kinematics import YoubotKinematics
 from youbot_kinematics.make_bag import FORMS, make_bag, random_joints
@@ -35,21 +36,6 @@ def pose(position=(0.2, 0.1, 0.3), quaternion=(0.0, 0.0, 0.0, 1.0)):
         make("geometry_msgs/Point", *position),
         make("geometry_msgs/Quaternion", *quaternion),
     )
-
-
-def write_topics(path, topics, compression="none"):
-    """A bag with several topics: name -> messages, one a second from the same time on."""
-    types = noetic_types()
-    writer = Writer(path)
-    if compression != "none":
-        writer.set_compression(Writer.CompressionFormat[compression.upper()])
-    with writer:
-        for topic, messages in topics.items():
-            msgtype = messages[0].__msgtype__
-            connection = writer.add_connection(topic, msgtype, typestore=types)
-            for second, message in enumerate(messages, start=1):
-                raw = types.serialize_ros1(message, msgtype)
-                writer.write(connection, second * 10**9, raw)
 
 
 @pytest.fixture
@@ -180,10 +166,10 @@ def test_files_that_are_no_bags_are_refused_by_what_they_are(tmp_path):
     assert "neither a file" in refusal(tmp_path / "pipe.bag")
 
 
-def test_a_bag_under_another_name_says_how_to_rename_it(bag, tmp_path):
+def test_a_bag_may_have_any_name(bag, tmp_path):
     make_bag(bag, Targets.from_joints(JOINTS))
     bag.rename(tmp_path / "targets.bag.active")
-    assert ".bag" in refusal(tmp_path / "targets.bag.active")
+    assert len(load_targets(tmp_path / "targets.bag.active")) == len(JOINTS)
 
 
 @pytest.mark.parametrize("compression", ["none", "bz2", "lz4"])
@@ -196,14 +182,6 @@ def test_a_bag_cut_short_anywhere_is_refused(bag, tmp_path, compression):
         if length not in inside_the_padding:
             cut.write_bytes(whole[:length])
             refusal(cut)
-
-
-def test_a_bag_without_an_index_says_so(bag):
-    make_bag(bag, Targets.from_joints(JOINTS))
-    content = bag.read_bytes()
-    at = content.index(b"index_pos=") + len(b"index_pos=")
-    bag.write_bytes(content[:at] + bytes(8) + content[at + 8 :])
-    assert "reindex" in refusal(bag)
 
 
 def test_a_bag_with_any_byte_changed_is_read_or_refused(bag):
@@ -324,13 +302,14 @@ def test_a_pose_at_infinity_is_refused(bag):
 
 
 @pytest.mark.parametrize("kind", ["PoseStamped", "PoseArray", "TransformStamped"])
-def test_targets_in_another_frame_are_refused(bag, kind):
-    header = make_header("camera")
+def test_targets_in_another_frame_are_refused_without_tf_and_taken_to_the_base_with_it(bag, kind):
+    header = make_header("/camera")
     transform = make(
         "geometry_msgs/Transform",
         make("geometry_msgs/Vector3", 0.1, 0.2, 0.3),
         make("geometry_msgs/Quaternion", 0.0, 0.0, 0.0, 1.0),
     )
+    in_camera = (0.1, 0.2, 0.3) if kind == "TransformStamped" else (0.2, 0.1, 0.3)
     contents = {
         "PoseStamped": [pose()],
         "PoseArray": [[pose()]],
@@ -338,6 +317,14 @@ def test_targets_in_another_frame_are_refused(bag, kind):
     }
     write_bag(bag, "goals", [make(f"geometry_msgs/{kind}", header, *contents[kind])])
     assert "'camera'" in refusal(bag)
+
+    T_base_camera, asked = np.eye(4), []
+    T_base_camera[:3] = [[0, -1, 0, 1], [1, 0, 0, 0], [0, 0, 1, 0]]
+    targets = load_targets(bag, T_base_from=lambda frame: asked.append(frame) or T_base_camera)
+    assert asked == ["camera"]
+    expected = [1.0 - in_camera[1], in_camera[0], in_camera[2]]
+    np.testing.assert_allclose(targets.poses[0, :3, 3], expected, atol=1e-15)
+    np.testing.assert_allclose(targets.poses[0, :3, :3], T_base_camera[:3, :3], atol=1e-15)
 
 
 def test_arrays_become_targets_under_the_same_rules():

@@ -8,9 +8,8 @@ from pathlib import Path
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from .exceptions import BagError, InputError
-
-_MAGIC = b"#ROSBAG V2.0\n"
+from .exceptions import BagError, InputError, YoubotError
+from .rosbag1 import MAGIC, open_rosbag1
 
 
 @contextmanager
@@ -20,30 +19,31 @@ def one_sentence(path: Path):
         yield
     except InputError as error:
         raise BagError(printable(f"{path}: {error}")) from error
+    except YoubotError:
+        raise
     except Exception as error:
         if isinstance(error, OSError) and error.strerror:
             raise BagError(f"{path}: {error.strerror}") from error
-        # Broken bytes surface as nearly anything: ReaderError, struct.error, KeyError, EOFError,
-        # AssertionError, UnicodeDecodeError, a decompressor's own ... They all mean the same.
+        # Broken bytes surface as nearly anything: struct.error, KeyError, EOFError, AssertionError,
+        # UnicodeDecodeError, a decompressor's own ... They all mean the same.
         detail = printable(str(error)[:80]).rstrip(".") or type(error).__name__
-        raise BagError(
-            f"{path}: the bag is damaged, cut short or was not closed ({detail});"
-            " 'rosbag reindex' may repair it"
-        ) from error
+        raise BagError(f"{path}: the bag is damaged ({detail})") from error
 
 
 @contextmanager
 def open_bag(path: Path):
-    """Yields rosbags' reader of a ROS 1 bag (``.bag``), or of a ROS 2 bag's folder.
+    """Yields the reader of a ROS 1 bag, or rosbags' own of a ROS 2 bag's folder.
 
     Raises:
         BagError: it is not a bag at first sight.
         OSError: it cannot be read; and ``one_sentence`` says what else.
     """
     _require_bag(path)
-    # The definitions of the messages are in every ROS 1 bag, and in few ROS 2 bags.
-    types = get_typestore(Stores.ROS2_HUMBLE) if path.is_dir() else None
-    with AnyReader([path], default_typestore=types) as reader:
+    if not path.is_dir():
+        with open_rosbag1(path) as bag:
+            yield bag
+        return
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         yield reader
 
 
@@ -115,10 +115,8 @@ def _require_bag(path: Path) -> None:
     if path.exists() and not path.is_file():
         raise BagError("neither a file nor a folder")
     with path.open("rb") as file:
-        start = file.read(len(_MAGIC))
+        start = file.read(len(MAGIC))
     if not start:
         raise BagError("the file is empty")
-    if start != _MAGIC:
+    if start != MAGIC:
         raise BagError("not a ROS bag of version 2.0: '#ROSBAG V2.0' is not its first line")
-    if path.suffix != ".bag":  # by the name, rosbags would take it for a ROS 2 bag
-        raise BagError("a ROS 1 bag, but its name must end in .bag")

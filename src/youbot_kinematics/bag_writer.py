@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from rosbags.rosbag1 import Writer
-from rosbags.typesys import Stores, get_typestore
 
 from .exceptions import InputError
 from .files import new_file
+from .rosbag1 import noetic_types
 
 _SECOND = 1_000_000_000  # ns
 
 #: LZ4 is not among them: the frames that rosbags writes are not those that ROS's reader takes.
 COMPRESSIONS = ("none", "bz2")
-
-
-@lru_cache(maxsize=None)
-def noetic_types():
-    """The message definitions of ROS Noetic."""
-    return get_typestore(Stores.ROS1_NOETIC)
 
 
 def make(msgtype: str, *values, **fields):

@@ -65,6 +65,10 @@ class Report:
 
     def lines(self) -> list[str]:
         """The report for people, a line for each figure that is known."""
+        return [f"{name:20}{text}" for name, text in self.rows()]
+
+    def rows(self) -> list[tuple[str, str]]:
+        """What each line of the report is about, and what it says."""
         missed = max(self.checkpoint_distances, default=np.nan)
         figures = [
             ("duration", self.duration, "{:.2f} s"),
@@ -78,7 +82,7 @@ class Report:
             ("detours", self.detours, "{:.0f}"),
         ]
         known = [figure for figure in figures if not np.isnan(figure[1])]
-        return [f"{name:20}{text.format(value)}" for name, value, text in known]
+        return [(name, text.format(value)) for name, value, text in known]
 
 
 def check(

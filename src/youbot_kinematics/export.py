@@ -14,8 +14,9 @@ from .bag_writer import make, make_duration, make_header, write_bag
 from .contract import NANOSECONDS, command_from_trajectory
 from .exceptions import InputError
 from .files import new_file
+from .interface import COMMAND
 
-COMMAND_TOPIC = "/EffortJointInterface_trajectory_controller/command"
+COMMAND_TOPIC = "/" + COMMAND.name
 
 
 def write_plan(path, plan, force: bool = False) -> None:

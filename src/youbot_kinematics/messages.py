@@ -17,7 +17,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
 
 from . import arm
-from .colours import BLACK, KIND_COLOURS, VERMILLION, rgb
+from .colours import BLACK, KIND_COLOURS, ORANGE, VERMILLION, rgb
 from .contract import Command, command_from_trajectory
 from .shapes import BOX, Shape
 from .track import Track
@@ -28,6 +28,7 @@ NUMBER_HEIGHT = 0.035  # m, of the digits
 AXIS_LENGTH = 0.05  # m, of a checkpoint's frame
 SEGMENT_WIDTH = 0.006  # m, of the tool's way
 LABEL_HEIGHT = 0.022  # m, of the letters
+BEAD_DIAMETER = 0.01  # m, of the trail
 GHOST_OPACITY = 0.3
 
 OPAQUE_BLACK = ColorRGBA(*rgb(BLACK), 1.0)
@@ -140,8 +141,23 @@ def segment_markers(tracks: list[Track]) -> MarkerArray:
         colour = ColorRGBA(*rgb(KIND_COLOURS[track.segment.kind]), 1.0)
         markers.append(_way(track.tool, colour))
         if track.segment.kind != "line":
-            markers.append(_label(track.tool[len(track.tool) // 2], track.segment.kind, colour))
+            late = track.tool[3 * len(track.tool) // 4]  # where segments have parted already
+            markers.append(_label(late, track.segment.kind, colour))
     return _instead_of_before(markers)
+
+
+def trail_marker(points: np.ndarray) -> Marker:
+    """Where the tool has been, (n, 3) in ``base_link``, m, as beads on its way."""
+    marker = Marker(
+        ns="trail",
+        type=Marker.SPHERE_LIST,
+        pose=pose_message(np.eye(4)),
+        scale=Vector3(BEAD_DIAMETER, BEAD_DIAMETER, BEAD_DIAMETER),
+        color=ColorRGBA(*rgb(ORANGE), 1.0),
+        points=[Point(*point) for point in points.tolist()],
+    )
+    marker.header.frame_id = arm.BASE_FRAME
+    return marker
 
 
 def ghost_markers(shapes: list[Shape], poses: np.ndarray) -> MarkerArray:
@@ -191,7 +207,7 @@ def _frame(T: np.ndarray) -> Marker:
         scale=Vector3(x=0.004),
         points=[point for end in ends for point in (Point(), end)],
         colors=[color for color in AXIS_COLORS for _ in range(2)],
-        color=OPAQUE_BLACK,  # RViz takes the colours above, but warns of a marker that is transparent
+        color=OPAQUE_BLACK,  # RViz takes those above, but warns of a marker that is transparent
     )
 
 
@@ -209,7 +225,7 @@ def _way(points: np.ndarray, colour: ColorRGBA) -> Marker:
 def _label(point: np.ndarray, text: str, colour: ColorRGBA) -> Marker:
     pose = pose_message(np.eye(4))
     pose.position = Point(*point.tolist())
-    pose.position.z += LABEL_HEIGHT
+    pose.position.z += 2 * LABEL_HEIGHT
     return Marker(
         ns="kinds",
         type=Marker.TEXT_VIEW_FACING,

@@ -53,7 +53,8 @@ class Parameters(Checked):
     """How to plan. Every value is checked when it is made.
 
     Raises:
-        InputError: a value of the wrong type, or outside of its bounds.
+        InputError: a value of the wrong type or outside of its bounds, or two that contradict
+            each other.
     """
 
     topic: str = parameter("", "topic of the targets; needed only if several topics fit")
@@ -112,6 +113,23 @@ class Parameters(Checked):
         0.02, "time between two points of the trajectory, s", at_least=0.001, at_most=1.0
     )
 
+    def __post_init__(self):
+        super().__post_init__()
+        for name, value, other, needed in _CONTRADICTIONS:
+            theirs = getattr(self, other)
+            if getattr(self, name) == value and theirs != needed:
+                raise InputError(
+                    f"parameters {name} and {other} contradict each other:"
+                    f" {value!r} goes with {needed!r} only, not with {theirs!r}"
+                )
+
+
+# A value of one parameter with which another must have a certain value, or would be ignored.
+_CONTRADICTIONS = (
+    ("solver", "pseudo_inverse", "checkpoint", "position"),  # it meets no more than positions
+    ("solver", "pseudo_inverse", "orientation_weight", 0.0),
+    ("solver", "closed_form", "kinematics", "dh"),  # the closed form is that of the DH table
+)
 
 _A_KIND = {str: "a text", bool: "true or false", int: "a whole number", float: "a number"}
 

@@ -2,33 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
 import logging
 import sys
-from dataclasses import fields
 
-import numpy as np
+from .exceptions import YoubotError
+from .plan_bags import plan_bags, status_of, table
+from .plan_job import KINDS, Job, jobs, plan_job
+from .plan_options import for_argparse, parameters_of, parser
+from .planner import Plan
+from .progress_bar import shown
 
-from . import arm, export, plot
-from .exceptions import InputError, YoubotError
-from .files import require_writable
-from .parameters import Parameters
-from .planner import Plan, plan
-from .targets import load_targets
+_INTERRUPTED = 130
 
-_PLANNED, _NO_PLAN, _BAD_INPUT, _INTERRUPTED = 0, 1, 2, 130
-
-_DESCRIPTION = """\
-Plans a trajectory of the youBot arm through the targets in a bag: the shortest tour, on straight
-lines of the tool, inside the joint limits. Needs no ROS."""
-
-_EPILOG = """\
-exit status: 0 planned, 1 there is no plan, 2 bad input
-
-examples:
-  plan_bag targets.bag --start 1 1 -2 1 1
-  plan_bag targets.bag --output plan.json --output plan.csv --plot plan.png
-  plan_bag targets.bag --output command.bag && rosbag play command.bag"""
+_log = logging.getLogger("youbot_kinematics")
 
 
 def main(argv=None) -> int:
@@ -40,17 +26,17 @@ def main(argv=None) -> int:
     Returns:
         The exit status: 0 planned, 1 no plan, 2 bad input, 130 interrupted.
     """
-    logging.basicConfig(format="plan_bag: %(levelname)s: %(message)s")
-    options = _parser().parse_args(_for_argparse(sys.argv[1:] if argv is None else argv))
+    logging.basicConfig(format="plan_bag: %(message)s")
+    _log.setLevel(logging.INFO)
+    options = parser().parse_args(for_argparse(sys.argv[1:] if argv is None else argv))
     try:
-        _run(options)
+        return _run(options)
     except YoubotError as error:
         print(f"plan_bag: {error}", file=sys.stderr)
-        return _BAD_INPUT if isinstance(error, InputError) else _NO_PLAN
+        return status_of(error)
     except KeyboardInterrupt:
         print("plan_bag: interrupted", file=sys.stderr)
         return _INTERRUPTED
-    return _PLANNED
 
 
 def summary(plan: Plan) -> list[str]:
@@ -76,101 +62,32 @@ def _about(segment) -> str:
     return f"{segment.kind:<19} {when}, {where}: {segment.reason}"
 
 
-def _run(options) -> None:
-    # What cannot be written is said before any work is done.
-    for path in options.output:
-        export.writer(path)
-        require_writable(path, options.force)
-    if options.plot:
-        plot.require_plottable(options.plot)
-        require_writable(options.plot, options.force)
-
-    parameters = Parameters(**{f.name: getattr(options, f.name) for f in fields(Parameters)})
-    targets = load_targets(options.bag, parameters.topic, parameters.limits)
-    result = plan(targets, _start(parameters), parameters)
-    print("\n".join(summary(result)))
-    for path in options.output:
-        export.write_plan(path, result, options.force)
-        print(f"written             {path}")
-    if options.plot:
-        plot.plot_plan(result, options.plot, force=options.force)
-        print(f"picture             {options.plot}")
+def _run(options) -> int:
+    parameters = parameters_of(options)
+    names = {kind: getattr(options, kind) for kind in KINDS}
+    every = jobs(options.bags, parameters, names, options.force)
+    if len(every) == 1:
+        _plan_one(every[0])
+        status = 0
+    else:
+        status = _plan_several(every)
+    if parameters.start is None:
+        _log.warning("no --start given: the arm was taken to start folded, all joints at zero")
+    return status
 
 
-def _start(parameters: Parameters):
-    if parameters.start is not None:
-        return parameters.start
-    logging.warning("no --start given: the arm is taken to start folded, all joints at zero")
-    return np.zeros(arm.DOF)
+def _plan_one(job: Job) -> None:
+    """Plans a bag, and says what came of it: beside standard output, where a plan goes there."""
+    with shown(log=_log.info):
+        planned = plan_job(job)
+    files = [file for file in job.files if not file.is_standard_output]
+    lines = summary(planned) + [f"{KINDS[file.kind].label:<19} {file.name}" for file in files]
+    print("\n".join(lines), file=sys.stdout if len(files) == len(job.files) else sys.stderr)
 
 
-def _for_argparse(argv) -> list[str]:
-    """The arguments as argparse takes them: ``--num-points`` where ROS has ``--num_points``."""
-    arguments = []
-    for argument in argv:
-        name, equals, value = argument.partition("=")
-        if name.startswith("--"):
-            argument = name.replace("_", "-") + equals + value
-        elif argument.startswith("-") and "e" in argument:
-            argument = " " + argument  # or argparse takes -1e-3 for an option
-        arguments.append(argument)
-    return arguments
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="plan_bag",
-        description=_DESCRIPTION,
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    add = parser.add_argument
-    add("bag", metavar="BAG", help="ROS 1 bag of the targets (or a ROS 2 bag's folder)")
-    add(
-        "--output",
-        metavar="FILE",
-        action="append",
-        default=[],
-        help="write the plan, as its name says: .json, .csv, or .bag for a controller; repeatable",
-    )
-    add("--plot", metavar="FILE", help="draw the plan, as its name says: .png or .svg")
-    add("--force", action="store_true", help="replace files that exist")
-    planning = parser.add_argument_group("how to plan")
-    for f in fields(Parameters):
-        planning.add_argument("--" + f.name.replace("_", "-"), **_option(f))
-    return parser
-
-
-def _option(f) -> dict:
-    """How argparse shall read a field of ``Parameters``, which checks the value itself."""
-    text = f.metadata["help"].replace("%", "%%")
-    if f.name == "start":
-        names = tuple(f"Q{i + 1}" for i in range(arm.DOF))
-        return {
-            "nargs": arm.DOF,
-            "type": float,
-            "metavar": names,
-            "help": f"{text} (default: zeros)",
-        }
-    if isinstance(f.default, bool):
-        shown = str(f.default).lower()
-        return {
-            "type": _truth,
-            "metavar": "BOOL",
-            "default": f.default,
-            "help": f"{text} (default: {shown})",
-        }
-    shown = f.default if f.default != "" else "none"
-    option = {"type": type(f.default), "default": f.default, "help": f"{text} (default: {shown})"}
-    if f.metadata["choices"]:
-        return {**option, "choices": f.metadata["choices"]}
-    return {**option, "metavar": type(f.default).__name__.upper()}
-
-
-def _truth(text: str) -> bool:
-    """``true`` or ``false`` as ROS's parameters have them."""
-    try:
-        return {"true": True, "false": False}[text.lower()]
-    except KeyError:
-        raise argparse.ArgumentTypeError(f"must be true or false, not {text!r}") from None
+def _plan_several(every: list[Job]) -> int:
+    """Plans bags in parallel, says what became of each, and returns the worst exit status."""
+    with shown(log=_log.info):
+        outcomes = plan_bags(every)
+    print("\n".join(table(outcomes)))
+    return max(outcome.status for outcome in outcomes)

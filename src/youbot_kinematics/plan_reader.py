@@ -18,11 +18,10 @@ from .contract import NANOSECONDS, Command
 from .exceptions import InputError
 from .inverse import as_transforms
 from .parameters import Parameters
-from .trajectory import Segment
+from .trajectory import KINDS, Segment
 
 # The parameters of a plan that its trajectory can be held against.
 _JUDGED_BY = ("acceleration", "limits", "return_home")
-_KINDS = ("line", "approach", "reconfiguration", "detour")
 # What a ROS duration holds, s.
 _LONGEST = 2.0**31
 
@@ -101,8 +100,8 @@ def _segments(values: list) -> tuple[Segment, ...]:
 def _segment(value, where: str) -> Segment:
     segment = _typed(value, dict, where)
     kind = _member(segment, "kind", str, where)
-    if kind not in _KINDS:
-        raise InputError(f"{where} is of kind {kind!r}, and must be of {', '.join(_KINDS)}")
+    if kind not in KINDS:
+        raise InputError(f"{where} is of kind {kind!r}, and must be of {', '.join(KINDS)}")
     start, end = (_finite(segment, name, where) for name in ("start", "end"))
     first, last = (_member(segment, name, int, where) for name in ("from", "to"))
     if not 0 <= start <= end or not 0 <= first <= last:

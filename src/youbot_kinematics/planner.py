@@ -21,6 +21,9 @@ from .trajectory import Trajectory
 #: A start this little outside of the limits, by rounding or a sensor's noise, is set on them (rad).
 START_TOLERANCE = 1e-3
 
+#: What is planned at once, in some minutes and in memory that a computer has.
+MOST_TARGETS, MOST_WAYPOINTS = 2_000, 200_000
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -51,16 +54,15 @@ def plan(targets: Targets, start, parameters: Parameters | None = None) -> Plan:
         The plan; its ``report`` says what the trajectory keeps, and it has passed its check.
 
     Raises:
-        InputError: the start is not five finite numbers inside the limits, there are no targets, or
-            they have no joints where these are to be met.
+        InputError: the start is not five finite numbers inside the limits, there are no targets or
+            too many, or they have no joints where these are to be met.
         PlanningError: there is no trajectory through the targets inside the limits, or none that
             the parameters allow.
     """
     p = parameters or Parameters()
     limits = joint_limits(p.limits)
     start = _start_inside(start, limits)
-    if not len(targets):
-        raise InputError("there are no targets to visit")
+    _require_plannable(len(targets), p)
 
     kinematics = YoubotKinematics(limits)
     T_start = kinematics.forward_kinematics(start)
@@ -69,6 +71,20 @@ def plan(targets: Targets, start, parameters: Parameters | None = None) -> Plan:
     poses = intermediate_tfs(range(len(tour.checkpoints)), tour.checkpoints, p.num_points)
     found = _first_that_passes(tour, limits, p)
     return Plan(targets, p, start, order, length, tour.checkpoints, poses, *found)
+
+
+def _require_plannable(count: int, p: Parameters) -> None:
+    """Raises InputError for a number of targets that no one can visit."""
+    if not count:
+        raise InputError("there are no targets to visit")
+    if count > MOST_TARGETS:
+        raise InputError(f"{count:,} targets: at most {MOST_TARGETS:,} are planned at once")
+    waypoints = count * (p.num_points + 1)
+    if waypoints > MOST_WAYPOINTS:
+        raise InputError(
+            f"{count:,} targets with num_points {p.num_points} give {waypoints:,} waypoints:"
+            f" at most {MOST_WAYPOINTS:,} are planned at once"
+        )
 
 
 def _start_inside(start, limits: JointLimits) -> np.ndarray:

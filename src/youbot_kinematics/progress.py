@@ -1,7 +1,7 @@
 """How far long work is: loops say what they do, and whoever runs them decides what becomes of it.
 
-A loop over ``with_progress(items, "doing this", n)`` is the loop over ``items`` and nothing else, until a
-listener is set around the work::
+A loop over ``with_progress(items, "doing this", n)`` is the loop over ``items`` and nothing else,
+until a listener is set around the work::
 
     with listened_by(print):
         plan(targets, start)
@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Callable, Iterable, Iterator, Optional, TypeVar
+from typing import Callable, Iterable, Iterator, TypeVar
 
 #: Called with what is done, and how many of how many steps of it are done.
 Listener = Callable[[str, int, int], None]
 T = TypeVar("T")
 
-_listener: ContextVar[Optional[Listener]] = ContextVar("listener", default=None)
+_listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
 
 
 def with_progress(items: Iterable[T], what: str, total: int) -> Iterator[T]:

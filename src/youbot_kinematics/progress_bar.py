@@ -27,7 +27,7 @@ def shown(stream=None, log=logging.info):
     """
     stream = sys.stderr if stream is None else stream
     if not stream.isatty():
-        with listened_by(_Every(LOGGED_EVERY, lambda *state: log(as_line(*state)))):
+        with logged(log):
             yield
         return
     try:
@@ -36,6 +36,11 @@ def shown(stream=None, log=logging.info):
     finally:
         stream.write(_ERASE)
         stream.flush()
+
+
+def logged(log):
+    """Logs how far the work inside is, by a function that takes a line."""
+    return listened_by(_Every(LOGGED_EVERY, lambda *state: log(as_line(*state))))
 
 
 def as_line(what: str, done: int, total: int) -> str:
@@ -55,7 +60,7 @@ def _draw(stream, *state) -> None:
 
 
 def _fraction(done: int, total: int) -> float:
-    return done / total if total else 1.0
+    return min(done / total, 1.0) if total > 0 else 1.0
 
 
 class _Every:

@@ -1,8 +1,8 @@
 """What the arm looks like: the boxes and cylinders of its URDF, and where they are.
 
 Pictures of the arm that RViz does not draw by itself are made of these: the page of a plan, and the
-translucent arm at the goal. The URDF says how its shapes lie when all joints are at zero, and forward
-kinematics how each moves from there.
+translucent arm at the goal. The URDF says how its shapes lie when all joints are at zero, and
+forward kinematics how each moves from there.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from .kinematics import dh_frames
 from .resources import resource_path
 
 BOX, CYLINDER = "box", "cylinder"
+SIDES = 24  # of the prism that is drawn for a cylinder
 
 
 class Shape(NamedTuple):
@@ -56,6 +57,28 @@ def shape_poses(shapes: list[Shape], q) -> np.ndarray:
     """Poses (n, 4, 4) in ``base_link``, m, of n shapes with the joints at q (5,), rad."""
     frames = dh_frames(np.asarray(q, dtype=float))
     return np.stack([frames[shape.frame] @ shape.T_frame_shape for shape in shapes])
+
+
+def mesh(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """A shape's surface: vertices (v, 3) in its Denavit-Hartenberg frame, m, and triangles (f, 3).
+
+    The triangles are indices of vertices. Both kinds are prisms: a cylinder's has many sides.
+    """
+    if shape.kind == BOX:
+        x, y = np.array([[-1, 1, 1, -1], [-1, -1, 1, 1]]) / 2
+    else:
+        angle = np.linspace(0.0, 2 * np.pi, SIDES, endpoint=False)
+        x, y = np.cos(angle) / 2, np.sin(angle) / 2
+    n = len(x)
+    bottom = np.column_stack([x, y, np.full(n, -0.5)])
+    centres = [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]
+    vertices = np.vstack([bottom, bottom + [0.0, 0.0, 1.0], centres]) * shape.size
+    a = np.arange(n)
+    b = (a + 1) % n
+    below, above = np.full(n, 2 * n), np.full(n, 2 * n + 1)
+    triangles = [(a, b, n + a), (b, n + b, n + a), (below, b, a), (above, n + a, n + b)]
+    R, p = shape.T_frame_shape[:3, :3], shape.T_frame_shape[:3, 3]
+    return vertices @ R.T + p, np.vstack([np.column_stack(each) for each in triangles])
 
 
 def _shape(visual, colour, frame: int, T_frame_shape) -> Shape:

@@ -17,7 +17,7 @@ the two blocks together, and the arm is singular in one of these ways, and no ot
   the tool is vertical on joint 1's axis, and both joints turn about one line.
 
 Its position part, the rows v, loses joint 5, on whose axis the tool is. Its singular values are
-|r| and those of the two rows v_x, v_z of joints 2 to 4:
+``|r|`` and those of the two rows v_x, v_z of joints 2 to 4:
 
 * ``shoulder``: r = 0, the tool is on joint 1's axis. Every ``wrist`` singularity is one of these.
 * ``stretch``: shoulder, elbow, wrist and tool on one line. Every one is an ``elbow`` singularity.

@@ -12,6 +12,7 @@ from .exceptions import PlanningError
 from .kdl import YoubotKDL
 from .kinematics import YoubotKinematics
 from .parameters import Parameters
+from .progress import with_progress
 from .resolve import Options, resolve
 from .resolve.explain import explained
 from .trajectory import JointPath
@@ -42,10 +43,13 @@ def pseudo_inverse(tour: Tour, limits: JointLimits, p: Parameters) -> list[Joint
     """
     if tour.exact.any():
         raise PlanningError(f"it meets positions only, and checkpoint: {p.checkpoint} is asked for")
+    if p.orientation_weight:
+        raise PlanningError("it follows positions only, and orientation_weight asks for more")
     kinematics = YoubotKDL() if p.kinematics == "kdl" else YoubotKinematics(limits)
     inside = limits.shrunk(SPLINE_MARGIN)
     paths, q = [], tour.start
-    for i, (T_a, T_b) in enumerate(zip(tour.checkpoints[:-1], tour.checkpoints[1:])):
+    lines = list(zip(tour.checkpoints[:-1], tour.checkpoints[1:]))
+    for i, (T_a, T_b) in enumerate(with_progress(lines, "tracking the lines", len(lines))):
         paths.append(line_path(kinematics, T_a, T_b, q, inside, i, p.num_points))
         q = paths[-1].joints[-1]
     return paths

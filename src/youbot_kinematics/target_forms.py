@@ -1,12 +1,13 @@
 """The messages that can hold targets, and how to take the targets out of each.
 
 ``FORMS`` is the table: another form is one more function and one more row. A target is an array:
-(5,) joint positions in rad, or (4, 4), the pose of ``arm_link_ee`` in ``base_link`` in m.
+(5,) joint positions in rad, or (4, 4), a pose of ``arm_link_ee`` in m, and with it goes the name of
+the frame that the pose is given in, empty where there is none to name.
 """
 
 from __future__ import annotations
 
-from typing import Iterator
+from typing import Iterator, Tuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -18,51 +19,50 @@ from .kinematics import as_joints
 # A quaternion whose norm is this near to 1 was rounded; farther off, it is something else.
 _NORM_ROUNDING = 1e-3
 
+Target = Tuple[str, np.ndarray]  # frame, and (5,) or (4, 4)
 
-def joint_state(message) -> Iterator[np.ndarray]:
+
+def joint_state(message) -> Iterator[Target]:
     """sensor_msgs/JointState: one target, by name if it has names."""
-    yield arm_positions(message.name, message.position)
+    yield "", arm_positions(message.name, message.position)
 
 
-def joint_trajectory(message) -> Iterator[np.ndarray]:
+def joint_trajectory(message) -> Iterator[Target]:
     """trajectory_msgs/JointTrajectory: one target a point."""
     for point in message.points:
-        yield arm_positions(message.joint_names, point.positions)
+        yield "", arm_positions(message.joint_names, point.positions)
 
 
-def pose(message) -> Iterator[np.ndarray]:
+def pose(message) -> Iterator[Target]:
     """geometry_msgs/Pose: one target."""
-    yield transform_matrix(message.position, message.orientation)
+    yield "", transform_matrix(message.position, message.orientation)
 
 
-def pose_stamped(message) -> Iterator[np.ndarray]:
+def pose_stamped(message) -> Iterator[Target]:
     """geometry_msgs/PoseStamped: one target."""
-    require_base_frame(message.header)
-    yield from pose(message.pose)
+    yield in_frame(message.header, message.pose.position, message.pose.orientation)
 
 
-def pose_array(message) -> Iterator[np.ndarray]:
+def pose_array(message) -> Iterator[Target]:
     """geometry_msgs/PoseArray: one target a pose."""
-    require_base_frame(message.header)
     for each in message.poses:
-        yield from pose(each)
+        yield in_frame(message.header, each.position, each.orientation)
 
 
-def path(message) -> Iterator[np.ndarray]:
+def path(message) -> Iterator[Target]:
     """nav_msgs/Path: one target a pose, each with its own header."""
     for each in message.poses:
         yield from pose_stamped(each)
 
 
-def transform(message) -> Iterator[np.ndarray]:
+def transform(message) -> Iterator[Target]:
     """geometry_msgs/Transform: one target."""
-    yield transform_matrix(message.translation, message.rotation)
+    yield "", transform_matrix(message.translation, message.rotation)
 
 
-def transform_stamped(message) -> Iterator[np.ndarray]:
+def transform_stamped(message) -> Iterator[Target]:
     """geometry_msgs/TransformStamped: one target; the name of the child frame is free."""
-    require_base_frame(message.header)
-    yield from transform(message.transform)
+    yield in_frame(message.header, message.transform.translation, message.transform.rotation)
 
 
 #: Message type -> the function that yields the targets in a message, or raises InputError.
@@ -118,7 +118,10 @@ def transform_matrix(position, orientation) -> np.ndarray:
     return T
 
 
-def require_base_frame(header) -> None:
-    """Raises BagError unless a header's frame is the arm's base, or not given."""
-    if header.frame_id.lstrip("/") not in ("", arm.BASE_FRAME):
-        raise BagError(f"given in frame {header.frame_id!r}; only {arm.BASE_FRAME} can be used")
+def in_frame(header, position, orientation) -> Target:
+    """A pose in the frame of a message's header.
+
+    Raises:
+        BagError: from ``transform_matrix``.
+    """
+    return header.frame_id.lstrip("/"), transform_matrix(position, orientation)

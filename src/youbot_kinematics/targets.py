@@ -7,8 +7,10 @@ A target is where the tool shall go: the arm's joint positions, or a pose of ``a
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
+from typing import Callable
 
 import numpy as np
 
@@ -17,11 +19,17 @@ from .bag_reader import choose_topic, describe, one_sentence, open_bag, ros1_nam
 from .exceptions import BagError, InputError
 from .inverse import as_transforms
 from .kinematics import YoubotKinematics, as_joints
+from .progress import with_progress
 from .target_forms import FORMS
 
 # A joint this little outside of its limit (rad) is on the limit: its value went through single
 # precision or a decimal text on the way here.
 _LIMIT_ROUNDING = 1e-6
+
+#: So many targets are read from a bag, and no more: memory is for those that can be meant.
+MOST_TARGETS = 200_000
+
+_BASE_FRAMES = ("", arm.BASE_FRAME)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +39,7 @@ class Targets:
     poses: np.ndarray  # (n, 4, 4): arm_link_ee in base_link, m
     joints: np.ndarray | None  # (n, 5) rad where given as joint positions, or None
     source: str  # for people: where they are from
+    warning: str = ""  # for people: what was lost on the way
 
     def __len__(self) -> int:
         return len(self.poses)
@@ -65,13 +74,34 @@ class Targets:
         return cls(poses, None, source)
 
 
-def load_targets(bag, topic: str = "", limits="urdf") -> Targets:
+def no_transform(frame: str) -> np.ndarray:
+    """Stands in for TF where there is none.
+
+    Raises:
+        BagError: always.
+    """
+    raise BagError(
+        f"given in frame {frame!r}; without TF only poses in {arm.BASE_FRAME} can be used"
+    )
+
+
+def load_targets(
+    bag,
+    topic: str = "",
+    limits="urdf",
+    T_base_from: Callable[[str], np.ndarray] = no_transform,
+) -> Targets:
     """Reads the targets in a bag, in the bag's order.
+
+    Of a bag that was never closed, as a killed recorder leaves it, the messages that are there as a
+    whole are read, and ``warning`` says so.
 
     Args:
         bag: path of a ROS 1 bag (``.bag``), or of a ROS 2 bag's folder.
         topic: topic of the targets, with or without the leading slash; found by itself if empty.
         limits: profile of joint limits, or ``JointLimits``, that joint targets must keep.
+        T_base_from: gives the pose (4, 4), m, of another frame in ``base_link`` by its name, or
+            raises a BagError; asked once for each frame.
 
     Raises:
         BagError: it cannot be read, no topic or several topics fit, or a target cannot be used.
@@ -80,32 +110,39 @@ def load_targets(bag, topic: str = "", limits="urdf") -> Targets:
     limits = arm.joint_limits(limits)
     path = Path(os.path.expanduser(str(bag)))
     with one_sentence(path):
-        values, origin = _read(path, topic)
+        values, origin, warning = _read(path, topic, T_base_from)
         source = f"{path.name}, {origin}"
         if values[0].shape == (arm.DOF,):
-            return Targets.from_joints(values, limits, source)
-        return Targets.from_poses(values, source)
+            targets = Targets.from_joints(values, limits, source)
+        else:
+            targets = Targets.from_poses(values, source)
+        return replace(targets, warning=warning and f"{path.name}: {warning}")
 
 
-def _read(path: Path, topic: str) -> tuple[list[np.ndarray], str]:
-    """Every target in a bag, arrays (5,) or (4, 4), one at least, and the topic and type."""
-    with open_bag(path) as reader:
-        connections = choose_topic(reader.connections, topic, FORMS, "targets")
-        values = _read_messages(reader, connections)
+def _read(path: Path, topic: str, T_base_from) -> tuple[list[np.ndarray], str, str]:
+    """Every target in a bag, arrays (5,) or (4, 4), one at least; topic and type; what is lost."""
+    with open_bag(path) as bag:
+        connections = choose_topic(bag.connections, topic, FORMS, "targets")
+        values = _read_messages(bag, connections, lru_cache(maxsize=None)(T_base_from))
         if not values:
             raise BagError(f"no targets in the messages of {describe(connections)}")
-        return values, f"topic {connections[0].topic} ({ros1_name(connections[0].msgtype)})"
+        origin = f"topic {connections[0].topic} ({ros1_name(connections[0].msgtype)})"
+        return values, origin, getattr(bag, "warning", "")
 
 
-def _read_messages(reader, connections) -> list[np.ndarray]:
+def _read_messages(bag, connections, T_base_from) -> list[np.ndarray]:
     values: list[np.ndarray] = []
-    for connection, _, raw in reader.messages(connections):
-        message = reader.deserialize(raw, connection.msgtype)
+    count = sum(connection.msgcount for connection in connections)
+    messages = with_progress(bag.messages(connections), "reading the targets", count)
+    for connection, _, raw in messages:
+        message = bag.deserialize(raw, connection.msgtype)
         try:
-            for value in FORMS[connection.msgtype](message):
-                values.append(value)
+            for frame, value in FORMS[connection.msgtype](message):
+                values.append(value if frame in _BASE_FRAMES else T_base_from(frame) @ value)
         except InputError as error:
             raise BagError(f"target {len(values) + 1} on {connection.topic}: {error}") from error
+        if len(values) > MOST_TARGETS:
+            raise BagError(f"more than {MOST_TARGETS:,} targets on {connection.topic}")
     return values
 
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from .optimal import optimal_rate
+from .progress import with_progress
 from .trajectory import JointPath, Segment, Trajectory, interpolate
 
 #: How finely the controller's interpolation is looked at, s.
@@ -42,7 +43,7 @@ def time_paths(paths, velocity, acceleration, dt: float, timing: str = "optimal"
     """
     first = paths[0].joints[0]
     points, segments, steps = [np.vstack([first, np.zeros((2, 5))])[:, None]], [], 0
-    for path in paths:
+    for path in with_progress(paths, "timing the lines", len(paths)):
         samples = time_path(path, velocity, acceleration, dt, RATES[timing])
         points.append(samples[:, 1:])
         end = steps + samples.shape[1] - 1

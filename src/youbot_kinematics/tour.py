@@ -12,8 +12,8 @@ import numpy as np
 EXACT_UP_TO = 18
 # Sets of targets that are looked at together: what they need stays in the processor's cache.
 _CHUNK = 2048
-# How long the local search looks, s, and the largest of the 16-bit integers that it takes.
-_SEARCH_TIME, _LARGEST = 0.2, 65535
+# How long the local search looks, s for each target, and the largest of the integers that it takes.
+_SEARCH_TIME, _LARGEST = 2.5e-3, 65535
 
 
 def shortest_path(start, positions, return_home: bool = False):
@@ -100,7 +100,7 @@ def local_search(distances: np.ndarray, return_home: bool = False) -> np.ndarray
         distances = np.pad(distances, (0, 1), constant_values=longest)
         distances[n, [0, n]] = distances[0, n] = 0.0
     integers = np.round(distances * (_LARGEST / longest)).astype(int)
-    tour = fast_tsp.find_tour(integers.tolist(), _SEARCH_TIME)
+    tour = fast_tsp.find_tour(integers.tolist(), _SEARCH_TIME * n)
     at_start = tour.index(0)
     tour = tour[at_start:] + tour[:at_start]
     if tour[1] == n:  # the closing node comes right after the start: walk the other way round

@@ -7,6 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+#: What a segment is for: the tool follows its straight line ("line"); the move to where the first
+#: begins ("approach"); a change of posture, from and to one point of the tool ("reconfiguration");
+#: from where the arm cannot follow the line to where it can again ("detour").
+KINDS = ("line", "approach", "reconfiguration", "detour")
+
 
 class Segment(NamedTuple):
     """A stretch of a trajectory with one purpose, from one checkpoint to the next.
@@ -14,10 +19,7 @@ class Segment(NamedTuple):
     Checkpoint 0 is where the arm starts; checkpoint i is the i-th target visited.
     """
 
-    # "line": the tool follows its straight line; "approach": the move to where the first begins;
-    # "reconfiguration": a change of posture, from and to one point of the tool; "detour": from
-    # where the arm cannot follow the line to where it can again.
-    kind: str
+    kind: str  # one of KINDS
     start: float  # s
     end: float  # s
     from_checkpoint: int

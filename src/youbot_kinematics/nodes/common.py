@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+import http.client
 import sys
 import time
+import xmlrpc.client
 from typing import Callable, TypeVar
 
 import rosgraph
 import rospy
 
 from ..exceptions import InputError, YoubotError
+from ..interface import COMMAND, JOINT_STATES, PATH
+from .master import MasterWatch
 
 #: Where the controller of the course's simulation listens; relative, so that it can be remapped.
-COMMAND_TOPIC = "EffortJointInterface_trajectory_controller/command"
-JOINT_STATES_TOPIC = "joint_states"
+COMMAND_TOPIC = COMMAND.name
+JOINT_STATES_TOPIC = JOINT_STATES.name
 #: The planned way of the tool, for RViz.
-PATH_TOPIC = "planned_path"
+PATH_TOPIC = PATH.name
 
 T = TypeVar("T")
 
 # Exit statuses; a node that is told to end while all is well exits with 0.
 FAILED, BAD_INPUT = 1, 2
+
+# What calls of rospy raise when the master goes in the middle of them.
+_MASTER_ERRORS = (
+    rospy.ROSException,
+    rosgraph.MasterException,
+    OSError,
+    http.client.HTTPException,
+    xmlrpc.client.Error,
+)
 
 
 class ShutdownError(YoubotError):
@@ -31,23 +44,32 @@ def run_node(name: str, body: Callable[[], None]) -> None:
     """Runs the body of a node and exits: what cannot be done is one logged sentence, no traceback.
 
     Exits with status 2 if what the node was given cannot be used, 1 for any other ``YoubotError``
-    and where there is no ROS master.
+    and where there is no ROS master, or none any more.
     """
+    watch = MasterWatch()
     if not rosgraph.is_master_online():
-        uri = rosgraph.get_master_uri()
-        print(f"{name}: there is no ROS master at {uri}; roscore starts one", file=sys.stderr)
-        sys.exit(FAILED)
-    rospy.init_node(name)
+        _exit_without_master(name, f"there is no ROS master at {watch.uri}; roscore starts one")
+    watch.start()
     try:
+        rospy.init_node(name)
         body()
-    except InputError as error:
-        rospy.logfatal("%s", error)
-        sys.exit(BAD_INPUT)
     except YoubotError as error:
-        rospy.logfatal("%s", error)
-        sys.exit(FAILED)
-    except rospy.ROSInterruptException:
-        pass
+        if not watch.lost:
+            rospy.logfatal("%s", error)
+            sys.exit(BAD_INPUT if isinstance(error, InputError) else FAILED)
+    except _MASTER_ERRORS:
+        # ROS raises these as well when it is told to end, which is no failure.
+        if not rospy.is_shutdown() and rosgraph.is_master_online():
+            raise
+        if not rospy.is_shutdown():
+            _exit_without_master(name, f"the ROS master at {watch.uri} is gone: ended")
+    if watch.lost:
+        _exit_without_master(name, f"the ROS master at {watch.uri} is gone: ended")
+
+
+def _exit_without_master(name: str, sentence: str) -> None:
+    print(f"{name}: {sentence}", file=sys.stderr)
+    sys.exit(FAILED)
 
 
 def read_parameters(make: Callable[[dict], object]):

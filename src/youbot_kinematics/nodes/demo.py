@@ -47,9 +47,13 @@ class DemoError(YoubotError):
 
 
 class Launch:
-    """``demo.launch`` as a process on a port of its own, which ends with the ``with`` block."""
+    """``demo.launch`` as a process on a port of its own, which ends with the ``with`` block.
 
-    def __init__(self):
+    Args:
+        arguments: of the launch file, such as ``"rviz:=true"``.
+    """
+
+    def __init__(self, *arguments: str):
         with socket.socket() as probe:
             probe.bind(("localhost", 0))
             port = probe.getsockname()[1]
@@ -60,7 +64,7 @@ class Launch:
             os.environ.pop(name, None)
         self._log = tempfile.TemporaryFile("w+", errors="replace")
         self._process = subprocess.Popen(
-            ["roslaunch", "-p", str(port), str(resource_path("launch/demo.launch"))],
+            ["roslaunch", "-p", str(port), str(resource_path("launch/demo.launch")), *arguments],
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT,

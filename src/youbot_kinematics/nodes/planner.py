@@ -8,7 +8,6 @@ stands by then. While the arm moves nothing is planned: every trajectory starts 
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 import rospy
@@ -16,14 +15,17 @@ from std_srvs.srv import Trigger, TriggerResponse
 from trajectory_msgs.msg import JointTrajectory
 
 from .. import arm
-from ..exceptions import InputError, YoubotError
+from ..exceptions import YoubotError
+from ..interface import REPLAN, NodeParameters
 from ..messages import trajectory_message
-from ..parameters import Parameters, parameter
 from ..plan_bag import summary
 from ..planner import Plan, plan
+from ..progress_bar import logged
 from ..targets import load_targets
 from .common import COMMAND_TOPIC, read_parameters, run_node, wait_for
+from .frames import T_base_from
 from .joint_states import JointStates
+from .master import other_publishers
 from .view import View
 
 #: How far the arm may be from a trajectory's first point when it is sent, rad.
@@ -37,24 +39,6 @@ class NotSentError(YoubotError):
     """There is a trajectory, but it could not, or must not, be handed to the controller."""
 
 
-@dataclass(frozen=True)
-class NodeParameters(Parameters):
-    """The planner's parameters, and what only the node needs."""
-
-    bag: str = parameter("", "bag file with the targets; required")
-    start_timeout: float = parameter(
-        5.0, "how long to wait for the arm's joint states, s", at_least=0.0, at_most=3600.0
-    )
-    subscriber_timeout: float = parameter(
-        30.0, "how long to wait for a controller to listen, s", at_least=0.0, at_most=3600.0
-    )
-
-    def __post_init__(self):
-        super().__post_init__()
-        if not self.bag:
-            raise InputError("parameter bag is required: the file with the targets (_bag:=FILE)")
-
-
 class PlannerNode:
     """Topics, service and state of the node; planning itself is in ``planner``.
 
@@ -64,7 +48,11 @@ class PlannerNode:
 
     def __init__(self, parameters: NodeParameters):
         self.parameters = parameters
-        self.targets = load_targets(parameters.bag, parameters.topic, parameters.limits)
+        self.targets = load_targets(
+            parameters.bag, parameters.topic, parameters.limits, T_base_from
+        )
+        if self.targets.warning:
+            rospy.logwarn("%s", self.targets.warning)
         self._busy = threading.Lock()
         self._joint_states = JointStates()
         # Not latched, or the arm would move again each time that a controller connects.
@@ -79,7 +67,7 @@ class PlannerNode:
             NotSentError: it could not be sent.
         """
         self._plan_and_send(self._first_start())
-        rospy.Service("~replan", Trigger, self._replan)
+        rospy.Service(REPLAN.name, Trigger, self._replan)
         rospy.spin()
 
     def _first_start(self) -> np.ndarray:
@@ -92,12 +80,15 @@ class PlannerNode:
             return here
         if states.position() is not None:
             raise NotSentError(f"the arm has not stood still in {timeout:g} s: nothing is planned")
-        came = f"{states.passed_over} without all of the arm's" if states.passed_over else "no"
+        if states.problem:
+            raise NotSentError(f"the arm's joint states are of no use: {states.problem}")
+        came = f"{states.others} without all of the arm's" if states.others else "no"
         rospy.logwarn("%s joint states in %g s: assuming that all are zero", came, timeout)
         return np.zeros(arm.DOF)
 
     def _plan_and_send(self, start: np.ndarray) -> Plan:
-        planned = plan(self.targets, start, self.parameters)
+        with logged(rospy.loginfo):
+            planned = plan(self.targets, start, self.parameters)
         for line in summary(planned):
             rospy.loginfo("%s", line)
         self._view.show(planned)
@@ -109,16 +100,25 @@ class PlannerNode:
         topic, timeout = self._command.resolved_name, self.parameters.subscriber_timeout
         if not wait_for(lambda: self._command.get_num_connections() or None, timeout):
             raise NotSentError(f"no controller listened on {topic} within {timeout:g} s: not sent")
-        here = self._joint_states.position()
-        if here is not None and np.abs(here - planned.start).max() > START_TOLERANCE:
-            i = int(np.argmax(np.abs(here - planned.start)))
-            raise NotSentError(
-                f"not sent: {arm.JOINT_NAMES[i]} is at {here[i]:.4f} rad, and the trajectory starts"
-                f" at {planned.start[i]:.4f} rad"
-            )
+        self._require_at(planned.start)
+        others = other_publishers(topic)
+        if others:
+            rospy.logwarn("%s can move the arm too: the last one heard does", ", ".join(others))
         self._joint_states.expect_motion()
         self._command.publish(trajectory_message(planned.trajectory))
         rospy.loginfo("sent %d points to %s", len(planned.trajectory.times), topic)
+
+    def _require_at(self, start: np.ndarray) -> None:
+        """Raises NotSentError if the arm is known to move, or to be somewhere else."""
+        here = wait_for(self._joint_states.standing, MOMENT)
+        if here is None and self._joint_states.position() is not None:
+            raise NotSentError("not sent: the arm has begun to move, by another's command")
+        if here is not None and np.abs(here - start).max() > START_TOLERANCE:
+            i = int(np.argmax(np.abs(here - start)))
+            raise NotSentError(
+                f"not sent: {arm.JOINT_NAMES[i]} is at {here[i]:.4f} rad, and the trajectory starts"
+                f" at {start[i]:.4f} rad"
+            )
 
     def _replan(self, _request) -> TriggerResponse:
         """Serves ``~replan``: the tour again, from where the arm stands now."""
@@ -129,6 +129,8 @@ class PlannerNode:
         except YoubotError as error:
             rospy.logwarn("replan: %s", error)
             return TriggerResponse(False, str(error))
+        except rospy.ROSException:
+            return TriggerResponse(False, "the node is ending")
         finally:
             self._busy.release()
         message = f"{len(planned.targets)} targets in {planned.trajectory.duration:.2f} s"
@@ -140,10 +142,9 @@ class PlannerNode:
             return here
         if self._joint_states.position() is not None:
             raise NotSentError("refused: the arm is moving; ask again when it stands still")
-        raise NotSentError("refused: no joint states come, so where the arm is is unknown")
+        problem = self._joint_states.problem or "none come"
+        raise NotSentError(f"refused: where the arm is is unknown, for its joint states: {problem}")
 
 
 def main() -> None:
-    run_node(
-        "planner_node", lambda: PlannerNode(read_parameters(NodeParameters.from_dict)).run()
-    )
+    run_node("planner_node", lambda: PlannerNode(read_parameters(NodeParameters.from_dict)).run())

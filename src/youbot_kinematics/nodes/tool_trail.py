@@ -13,9 +13,11 @@ import numpy as np
 import rospy
 from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState
+from visualization_msgs.msg import Marker
 
+from ..interface import TRAIL
 from ..kinematics import YoubotKinematics
-from ..messages import joints_from_message, path_message
+from ..messages import joints_from_message, trail_marker
 from ..parameters import Checked, parameter
 from .common import JOINT_STATES_TOPIC, PATH_TOPIC, read_parameters, run_node
 
@@ -25,7 +27,7 @@ class TrailParameters(Checked):
     """What the trail can be told."""
 
     spacing: float = parameter(
-        0.003, "how far the tool goes from one point of the trail to the next, m", at_least=0.0005
+        0.02, "how far the tool goes from one point of the trail to the next, m", at_least=0.001
     )
     points: int = parameter(
         3000, "length of the trail; its oldest points go first", at_least=2, at_most=100_000
@@ -40,9 +42,9 @@ class ToolTrail:
         self._parameters = parameters
         self._kinematics = YoubotKinematics()
         self._lock = threading.Lock()  # between the topics' threads and the loop
-        self._poses: list[np.ndarray] = []
+        self._points: list[np.ndarray] = []  # (3,) m
         self._grown = False
-        self._trail = rospy.Publisher("tool_trail", Path, queue_size=1, latch=True)
+        self._trail = rospy.Publisher(TRAIL.name, Marker, queue_size=1, latch=True)
         rospy.Subscriber(JOINT_STATES_TOPIC, JointState, self._take, queue_size=10)
         rospy.Subscriber(PATH_TOPIC, Path, self._begin, queue_size=1)
 
@@ -51,30 +53,26 @@ class ToolTrail:
         rate = rospy.Rate(self._parameters.rate, reset=True)
         while not rospy.is_shutdown():
             with self._lock:
-                poses, self._grown = (list(self._poses) if self._grown else None), False
-            if poses is not None:
-                self._trail.publish(path_message(poses))
+                points, grown, self._grown = self._points, self._grown, False
+            if grown:
+                self._trail.publish(trail_marker(np.array(points).reshape(-1, 3)))
             rate.sleep()
 
     def _take(self, message: JointState) -> None:
         joints = joints_from_message(message)
         if joints is None:
             return
-        T = self._kinematics.forward_kinematics(joints)
+        point = self._kinematics.forward_kinematics(joints)[:3, 3]
         with self._lock:
-            if self._poses and _distance(T, self._poses[-1]) < self._parameters.spacing:
+            before = self._points[-1:]
+            if before and np.linalg.norm(point - before[0]) < self._parameters.spacing:
                 return
-            self._poses = [*self._poses[1 - self._parameters.points :], T]
+            self._points = [*self._points[1 - self._parameters.points :], point]
             self._grown = True
 
     def _begin(self, _path: Path) -> None:
         with self._lock:
-            self._poses, self._grown = self._poses[-1:], True
-
-
-def _distance(T_a: np.ndarray, T_b: np.ndarray) -> float:
-    """How far the origins of two poses are apart, m."""
-    return float(np.linalg.norm(T_a[:3, 3] - T_b[:3, 3]))
+            self._points, self._grown = self._points[-1:], True
 
 
 def main() -> None:

@@ -7,24 +7,24 @@ from nav_msgs.msg import Path
 from visualization_msgs.msg import MarkerArray
 
 from ..exceptions import InputError
+from ..interface import CHECKPOINTS, GOAL, PATH, SEGMENTS
 from ..messages import checkpoint_markers, ghost_markers, path_message, segment_markers
 from ..planner import Plan
 from ..shapes import arm_shapes, shape_poses
 from ..track import tool_tracks
-from .common import PATH_TOPIC
 
 
 class View:
     """The topics of a plan, latched: whoever looks later sees it as well."""
 
     def __init__(self):
-        def latched(name, kind):
-            return rospy.Publisher(name, kind, queue_size=1, latch=True)
+        def latched(channel, kind):
+            return rospy.Publisher(channel.name, kind, queue_size=1, latch=True)
 
-        self._checkpoints = latched("checkpoint_positions", MarkerArray)
-        self._path = latched(PATH_TOPIC, Path)
-        self._segments = latched("planned_segments", MarkerArray)
-        self._goal = latched("goal_arm", MarkerArray)
+        self._checkpoints = latched(CHECKPOINTS, MarkerArray)
+        self._path = latched(PATH, Path)
+        self._segments = latched(SEGMENTS, MarkerArray)
+        self._goal = latched(GOAL, MarkerArray)
 
     def show(self, planned: Plan) -> None:
         """Publishes a plan, in the place of the one before."""

@@ -14,6 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.distance import cdist
 
+from ..progress import with_progress
+
 # The pitch moves by no more than this many cells from a waypoint to the next.
 REACH = 3
 # A joint that moves for longer than this from a waypoint to the next (s, at full speed) is torn
@@ -67,7 +69,8 @@ def best_walk(graph: Graph, reconfigure: bool = True) -> Walk | None:
     came_from, changed_from = np.empty((2, K, n_cells), dtype=np.int16)
     cost = np.full(n_cells, np.inf)
     cost[graph.start] = 0.0
-    for k, steps in enumerate(_steps_into(graph)):
+    waypoints = with_progress(_steps_into(graph), "searching the joints along the tour", K)
+    for k, steps in enumerate(waypoints):
         cost, came_from[k] = _advance(graph, k, cost, steps)
         cost, changed_from[k] = _change(graph, k, cost, reconfigure)
         if not np.isfinite(cost).any():
