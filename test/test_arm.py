@@ -72,7 +72,7 @@ def test_a_joint_exactly_on_its_limit_is_inside():
 
 def test_a_violation_is_described_by_the_joint_that_is_farthest_outside():
     text = arm.LIMITS["urdf"].describe_violation(np.array([6.0, 1.0, 0.5, 1.0, 1.0]))
-    assert text == "arm_joint_3 at 0.5000 rad is above its upper limit 0.0000 rad"
+    assert text == "arm_joint_3 at 0.5000 rad is 0.5 rad above its upper limit 0.0000 rad"
 
 
 def test_an_unknown_limit_profile_is_refused_with_the_known_ones():

@@ -87,6 +87,12 @@ def test_a_bag_that_lacks_its_index_is_recovered_with_a_warning(bag, form, compr
         assert RECORDER_KILLED in targets.warning and bag.name in targets.warning
 
 
+def test_a_program_that_reads_such_a_bag_says_so(bag, caplog):
+    bag.write_bytes(never_finished(DEMO.read_bytes()))
+    load_targets(bag)
+    assert RECORDER_KILLED in caplog.text and caplog.records[0].levelname == "WARNING"
+
+
 def test_of_an_unfinished_bag_every_whole_message_is_recovered_and_no_other(bag):
     write_bag(bag, "goals", STATES)
     whole = bag.read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from .exceptions import BagError, InputError, YoubotError
 from .rosbag1 import MAGIC, open_rosbag1
+
+_log = logging.getLogger("youbot_kinematics")
 
 
 @contextmanager
@@ -41,6 +44,8 @@ def open_bag(path: Path):
     _require_bag(path)
     if not path.is_dir():
         with open_rosbag1(path) as bag:
+            if bag.warning:
+                _log.warning("%s: %s", path, bag.warning)
             yield bag
         return
     with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:

@@ -1,7 +1,7 @@
 """The quickest way along a joint path, by toppra.
 
-Pham and Pham, "A new approach to time-optimal path parameterization based on reachability analysis",
-IEEE Transactions on Robotics 34 (2018).
+Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
+analysis", IEEE Transactions on Robotics 34 (2018).
 """
 
 from __future__ import annotations
