@@ -6,6 +6,7 @@ import pytest
 from youbot_kinematics import InputError, PlanningError, YoubotKinematics
 from youbot_kinematics.make_bag import random_joints
 from youbot_kinematics.parameters import Parameters
+from youbot_kinematics.plan_bag import summary
 from youbot_kinematics.planner import plan
 from youbot_kinematics.targets import Targets
 from youbot_kinematics.trajectory import interpolate
@@ -76,6 +77,15 @@ def test_pose_targets_are_met_exactly_on_request():
     planned = plan(Targets.from_poses(TARGETS.poses), START, Parameters(checkpoint="pose"))
     assert max(planned.report.checkpoint_distances) < 1e-6
     assert max(planned.report.checkpoint_angles) < 1e-6
+
+
+def test_a_pose_that_the_arm_cannot_take_is_met_in_position_and_named():
+    sideways = TARGETS.poses.copy()
+    sideways[1, :3, :3] = sideways[1, :3, :3] @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    planned = plan(Targets.from_poses(sideways), START, Parameters(checkpoint="pose"))
+    assert planned.met_in_position_only.tolist() == [1]
+    assert max(planned.report.checkpoint_distances) < 1e-6
+    assert any("targets 2: the arm cannot" in line for line in summary(planned))
 
 
 def test_poses_have_no_joints_to_be_met():

@@ -50,8 +50,17 @@ def summary(plan: Plan) -> list[str]:
         f"waypoints           {len(plan.poses)}",
         f"trajectory points   {len(plan.trajectory.times)}",
         *plan.report.lines(),
+        *_about_poses_in_vain(plan.met_in_position_only),
         *(_about(segment) for segment in plan.trajectory.segments if segment.kind != "line"),
     ]
+
+
+def _about_poses_in_vain(targets) -> list[str]:
+    """A line about targets whose orientation the arm cannot take there, if there are any."""
+    if not len(targets):
+        return []
+    numbers = " ".join(str(target + 1) for target in targets)
+    return [f"position only       targets {numbers}: the arm cannot take their orientation there"]
 
 
 def _about(segment) -> str:

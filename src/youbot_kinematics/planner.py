@@ -35,6 +35,7 @@ class Plan:
     order: np.ndarray  # indices of the targets in visiting order, (n,)
     length: float  # of the tool's way through the checkpoints, m
     checkpoints: np.ndarray  # poses: the start's, then the targets' as visited, (n + 1, 4, 4), m
+    met_in_position_only: np.ndarray  # indices of targets whose pose was asked for in vain, (m,)
     poses: np.ndarray  # evenly spaced waypoints, checkpoints included, (m, 4, 4), m
     solver: str  # the one that found the joints
     solver_reason: str  # why it was that one
@@ -70,7 +71,8 @@ def plan(targets: Targets, start, parameters: Parameters | None = None) -> Plan:
     tour = _tour(kinematics, start, T_start, targets, order, p)
     poses = intermediate_tfs(range(len(tour.checkpoints)), tour.checkpoints, p.num_points)
     found = _first_that_passes(tour, limits, p)
-    return Plan(targets, p, start, order, length, tour.checkpoints, poses, *found)
+    in_vain = order[~tour.exact[: len(order)]] if p.checkpoint == "pose" else order[:0]
+    return Plan(targets, p, start, order, length, tour.checkpoints, in_vain, poses, *found)
 
 
 def _require_plannable(count: int, p: Parameters) -> None:
