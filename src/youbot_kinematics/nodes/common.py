@@ -46,9 +46,9 @@ def run_node(name: str, body: Callable[[], None]) -> None:
     Exits with status 2 if what the node was given cannot be used, 1 for any other ``YoubotError``
     and where there is no ROS master, or none any more.
     """
-    watch = MasterWatch()
+    watch = MasterWatch(name, FAILED)
     if not rosgraph.is_master_online():
-        _exit_without_master(name, f"there is no ROS master at {watch.uri}; roscore starts one")
+        watch.exit(f"there is no ROS master at {watch.uri}; roscore starts one")
     watch.start()
     try:
         rospy.init_node(name)
@@ -62,14 +62,9 @@ def run_node(name: str, body: Callable[[], None]) -> None:
         if not rospy.is_shutdown() and rosgraph.is_master_online():
             raise
         if not rospy.is_shutdown():
-            _exit_without_master(name, f"the ROS master at {watch.uri} is gone: ended")
+            watch.exit_since_lost()
     if watch.lost:
-        _exit_without_master(name, f"the ROS master at {watch.uri} is gone: ended")
-
-
-def _exit_without_master(name: str, sentence: str) -> None:
-    print(f"{name}: {sentence}", file=sys.stderr)
-    sys.exit(FAILED)
+        watch.exit_since_lost()
 
 
 def read_parameters(make: Callable[[dict], object]):
