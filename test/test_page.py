@@ -225,7 +225,8 @@ def drags(browser):
 
 def steady_eye(browser):
     """Where the eye of the scene is, x, y and z, once it no longer glides."""
-    script = """const eye = document.getElementById('scene')._fullLayout.scene._scene.getCamera().eye
+    script = """const layout = document.getElementById('scene')._fullLayout
+                const eye = layout.scene._scene.getCamera().eye
                 return [eye.x, eye.y, eye.z]"""
     eye, last = browser.execute_script(script), None
     for _ in range(20):

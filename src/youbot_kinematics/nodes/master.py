@@ -19,8 +19,8 @@ _GRACE = 5.0
 class MasterWatch:
     """Ends the node once its master is gone: no one could find the node any more.
 
-    A node that is registering would wait for a new master for ever, and one that is in the middle of
-    a call may not even take notice of being told to end: such a one is ended here.
+    A node that is registering would wait for a new master for ever, and one that is in the middle
+    of a call may not even take notice of being told to end: such a one is ended here.
 
     Args:
         name: of the node.
