@@ -29,6 +29,7 @@ def test_json_holds_the_whole_plan(planned, tmp_path):
     assert read["order"] == [1, 0]
     assert read["length"] == pytest.approx(planned.length)
     assert read["report"]["passed"] is True and read["frame"] == "base_link"
+    assert read["report"]["solver"] == planned.solver and read["report"]["solver_reason"]
     assert read["parameters"]["num_points"] == 10 and read["targets"]["source"] == "a test"
     assert [(s["kind"], s["from"], s["to"]) for s in read["segments"]] == [
         ("line", 0, 1),

@@ -99,7 +99,12 @@ def as_dict(plan) -> dict:
                 }
                 for segment in plan.trajectory.segments
             ],
-            "report": plan.report.as_dict(),
+            "report": {
+                **plan.report.as_dict(),
+                "solver": plan.solver,
+                "solver_reason": plan.solver_reason,
+                "met_in_position_only": plan.met_in_position_only,
+            },
             "frame": arm.BASE_FRAME,
             "tool_frame": arm.TOOL_FRAME,
             "start": plan.start,
