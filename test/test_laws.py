@@ -69,7 +69,7 @@ def test_another_target_never_makes_the_tour_shorter(seed, n):
     assert shortest_path(points[0], points[1:-1])[1] <= shortest_path(points[0], points[1:])[1]
 
 
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 @given(
     joints=st.lists(INSIDE, min_size=1, max_size=6),
     form=st.sampled_from(sorted(FORMS)),
@@ -82,7 +82,7 @@ def test_targets_come_back_from_a_bag(tmp_path_factory, joints, form, compressio
     np.testing.assert_allclose(load_targets(bag).poses, made.poses, atol=1e-12)
 
 
-@settings(deadline=None, max_examples=8)
+@settings(max_examples=8)
 @given(SEEDS, st.integers(1, 4))
 def test_a_plan_keeps_its_promises_and_comes_back_from_its_file(tmp_path_factory, seed, n):
     start, *targets = random_joints(n + 1, seed, LIMITS)

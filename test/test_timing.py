@@ -46,7 +46,7 @@ def test_a_long_move_takes_the_time_that_its_velocity_asks_for():
     assert shortest <= trajectory.duration <= shortest + 2.5 * DT
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(2, 12),
@@ -64,7 +64,7 @@ def test_the_controller_s_motion_keeps_the_limits_and_uses_them(seed, n, dt, tim
     assert used * trajectory.duration >= 0.8 * shorter
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 8))
 def test_it_starts_and_ends_at_rest_where_the_path_does(seed, n):
     joints = np.random.default_rng(seed).normal(size=(n, 5))

@@ -66,7 +66,7 @@ def test_repeated_targets_are_each_visited():
     assert length == 1.0
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(2, 7), st.integers(0, 2**32 - 1), st.randoms(use_true_random=False))
 def test_a_permutation_of_the_targets_does_not_change_the_length(n, seed, random):
     start, positions = random_points(n, seed)
