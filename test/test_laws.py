@@ -53,7 +53,6 @@ def test_a_turn_of_joint_1_turns_every_answer_of_the_inverse(q, angle):
     assert np.abs(answers - turned).max(axis=1).min() < 1e-7
 
 
-@settings(deadline=None)
 @given(SEEDS, st.integers(1, 8), st.floats(-np.pi, np.pi), st.booleans())
 def test_a_turn_of_all_about_joint_1_keeps_the_length_of_the_tour(seed, n, angle, home):
     points = np.random.default_rng(seed).uniform(-0.5, 0.5, (n + 1, 3))
@@ -62,7 +61,6 @@ def test_a_turn_of_all_about_joint_1_keeps_the_length_of_the_tour(seed, n, angle
     assert lengths[0] == pytest.approx(lengths[1], abs=1e-12)
 
 
-@settings(deadline=None)
 @given(SEEDS, st.integers(2, 8))
 def test_another_target_never_makes_the_tour_shorter(seed, n):
     points = np.random.default_rng(seed).uniform(-0.5, 0.5, (n + 1, 3))
