@@ -185,16 +185,7 @@ def _sphere(T: np.ndarray) -> Marker:
 
 
 def _number(T: np.ndarray, text: str) -> Marker:
-    pose = pose_message(T)
-    pose.position.z += NUMBER_HEIGHT
-    return Marker(
-        ns="numbers",
-        type=Marker.TEXT_VIEW_FACING,
-        pose=pose,
-        scale=Vector3(z=NUMBER_HEIGHT),
-        color=OPAQUE_BLACK,
-        text=text,
-    )
+    return _text("numbers", T, NUMBER_HEIGHT, NUMBER_HEIGHT, OPAQUE_BLACK, text)
 
 
 def _frame(T: np.ndarray) -> Marker:
@@ -223,14 +214,20 @@ def _way(points: np.ndarray, colour: ColorRGBA) -> Marker:
 
 
 def _label(point: np.ndarray, text: str, colour: ColorRGBA) -> Marker:
-    pose = pose_message(np.eye(4))
-    pose.position = Point(*point.tolist())
-    pose.position.z += 2 * LABEL_HEIGHT
+    T = np.eye(4)
+    T[:3, 3] = point
+    return _text("kinds", T, LABEL_HEIGHT, 2 * LABEL_HEIGHT, colour, text)
+
+
+def _text(namespace, T: np.ndarray, height, above, colour: ColorRGBA, text: str) -> Marker:
+    """A text of a height, so far above the origin of T (4, 4), in m."""
+    pose = pose_message(T)
+    pose.position.z += above
     return Marker(
-        ns="kinds",
+        ns=namespace,
         type=Marker.TEXT_VIEW_FACING,
         pose=pose,
-        scale=Vector3(z=LABEL_HEIGHT),
+        scale=Vector3(z=height),
         color=colour,
         text=text,
     )
