@@ -25,7 +25,7 @@ ROS_FREE = """
 """.split()
 ROS_BASED = """
     messages
-    nodes nodes.master nodes.common nodes.frames nodes.joint_states nodes.arm_simulator nodes.view
+    nodes nodes.ending nodes.master nodes.common nodes.frames nodes.joint_states nodes.arm_simulator nodes.view
     nodes.planner nodes.tool_trail nodes.joint_sliders nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED

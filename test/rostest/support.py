@@ -1,7 +1,12 @@
 """What the test nodes share: running the package's programs, recording a topic, waiting."""
 
+import os
 import subprocess
+import threading
 import time
+from contextlib import contextmanager
+from socketserver import ThreadingMixIn
+from xmlrpc.server import SimpleXMLRPCServer
 
 import rospy
 
@@ -36,6 +41,33 @@ def wait_until(condition, timeout=30.0):
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.02)
     return bool(condition())
+
+
+class _Master(ThreadingMixIn, SimpleXMLRPCServer):
+    daemon_threads = True
+
+
+@contextmanager
+def slow_master(slow, seconds=2.0):
+    """A ROS master that says yes to everything, and takes its time for the calls named ``slow``.
+
+    Yields an event that is set once there is such a call.
+    """
+    called = threading.Event()
+
+    def answer(method, _arguments):
+        if method == slow:
+            called.set()
+            time.sleep(seconds)
+        return [1, "", {}]
+
+    with _Master(("localhost", 0), logRequests=False) as server:
+        server.register_instance(type("Calls", (), {"_dispatch": staticmethod(answer)})())
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        uri = f"http://localhost:{server.server_address[1]}"
+        os.environ.update(ROS_MASTER_URI=uri, ROS_HOSTNAME="localhost")
+        yield called
+        server.shutdown()
 
 
 class Recorder:

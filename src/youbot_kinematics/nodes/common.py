@@ -13,6 +13,7 @@ import rospy
 
 from ..exceptions import InputError, YoubotError
 from ..interface import COMMAND, JOINT_STATES, PATH
+from .ending import Ending
 from .master import MasterWatch
 
 #: Where the controller of the course's simulation listens; relative, so that it can be remapped.
@@ -46,13 +47,16 @@ def run_node(name: str, body: Callable[[], None]) -> None:
     Exits with status 2 if what the node was given cannot be used, 1 for any other ``YoubotError``
     and where there is no ROS master, or none any more.
     """
-    watch = MasterWatch(name, FAILED)
+    ending = Ending()
+    ending.on_signals()
+    watch = MasterWatch(name, FAILED, ending)
     if not rosgraph.is_master_online():
         watch.exit(f"there is no ROS master at {watch.uri}; roscore starts one")
     watch.start()
     try:
-        rospy.init_node(name)
-        body()
+        rospy.init_node(name, disable_signals=True)  # ``Ending`` sees to them
+        if not rospy.is_shutdown():
+            body()
     except YoubotError as error:
         if not watch.lost:
             rospy.logfatal("%s", error)
@@ -63,6 +67,8 @@ def run_node(name: str, body: Callable[[], None]) -> None:
             raise
         if not rospy.is_shutdown():
             watch.exit_since_lost()
+    finally:
+        ending.wait()
     if watch.lost:
         watch.exit_since_lost()
 

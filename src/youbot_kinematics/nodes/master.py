@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import threading
 import time
@@ -10,25 +9,25 @@ import time
 import rosgraph
 import rospy
 
+from .ending import Ending
+
 # The master is gone when it has not answered so many times, so many s apart.
 _MISSES, _PERIOD = 2, 1.0
-# s. How long a node may take to end once it is told to, before it is ended.
-_GRACE = 5.0
 
 
 class MasterWatch:
     """Ends the node once its master is gone: no one could find the node any more.
 
-    A node that is registering would wait for a new master for ever, and one that is in the middle
-    of a call may not even take notice of being told to end: such a one is ended here.
+    A node that is registering would wait for a new master for ever.
 
     Args:
         name: of the node.
         status: what it exits with.
+        ending: how it is ended.
     """
 
-    def __init__(self, name: str, status: int):
-        self._name, self._status = name, status
+    def __init__(self, name: str, status: int, ending: Ending):
+        self._name, self._status, self._ending = name, status, ending
         self.uri = rosgraph.get_master_uri()
         self._lost = threading.Event()
 
@@ -47,8 +46,7 @@ class MasterWatch:
             misses = 0 if rosgraph.is_master_online() else misses + 1
         if misses == _MISSES and not rospy.is_shutdown():
             self._lost.set()
-            threading.Thread(target=self._end, daemon=True).start()
-            rospy.signal_shutdown("the ROS master is gone")
+            self._ending.begin("the ROS master is gone", self._say_lost, self._status)
 
     def exit(self, sentence: str) -> None:
         """Ends the process with a sentence about the master.
@@ -56,7 +54,7 @@ class MasterWatch:
         Raises:
             SystemExit: always.
         """
-        print(f"{self._name}: {sentence}", file=sys.stderr, flush=True)
+        self._say(sentence)
         sys.exit(self._status)
 
     def exit_since_lost(self) -> None:
@@ -65,14 +63,14 @@ class MasterWatch:
         Raises:
             SystemExit: always.
         """
-        self.exit(f"the ROS master at {self.uri} is gone: ended")
+        self._say_lost()
+        sys.exit(self._status)
 
-    def _end(self) -> None:
-        time.sleep(_GRACE)
-        try:
-            self.exit_since_lost()
-        finally:
-            os._exit(self._status)  # a thread cannot end the others any other way
+    def _say_lost(self) -> None:
+        self._say(f"the ROS master at {self.uri} is gone: ended")
+
+    def _say(self, sentence: str) -> None:
+        print(f"{self._name}: {sentence}", file=sys.stderr, flush=True)
 
 
 def other_publishers(topic: str) -> list[str]:
