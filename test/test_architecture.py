@@ -7,14 +7,13 @@ from pathlib import Path
 
 import pytest
 
-SOURCE = Path(__file__).resolve().parents[1] / "src"
-PACKAGE = SOURCE / "youbot_kinematics"
+PACKAGE = Path(__file__).resolve().parents[1] / "src/youbot_kinematics"
 
 # A module may import those above it and none below it. "youbot_kinematics" is its __init__.py.
 ROS_FREE = """
     exceptions resources files colours progress progress_bar
-    arm posture singularity intervals selection planar inverse position nearest kinematics kdl
-    shapes
+    arm formulas posture singularity intervals selection planar inverse position nearest kinematics
+    kdl shapes
     bag_records rosbag1 bag_reader target_forms targets tour path trajectory track differential
     resolve.lines resolve.smoothing resolve.search resolve.route resolve.graph resolve.itinerary
     resolve.pitch resolve.roll resolve resolve.explain
@@ -25,8 +24,8 @@ ROS_FREE = """
 """.split()
 ROS_BASED = """
     messages
-    nodes nodes.ending nodes.master nodes.common nodes.frames nodes.joint_states nodes.arm_simulator nodes.view
-    nodes.planner nodes.tool_trail nodes.joint_sliders nodes.demo
+    nodes nodes.ending nodes.master nodes.common nodes.frames nodes.joint_states
+    nodes.arm_simulator nodes.view nodes.planner nodes.tool_trail nodes.joint_sliders nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED
 
@@ -43,7 +42,9 @@ def name_of(path):
     return ".".join(part for part in parts if part != "__init__") or "youbot_kinematics"
 
 
-MODULES = {name_of(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+# With the stub of the one that is compiled
+FILES = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.pyi")])
+MODULES = {name_of(path): path for path in FILES}
 
 
 def imports_of(name):
@@ -91,7 +92,7 @@ def test_only_the_bottom_of_the_order_imports_ros(name):
 def loaded_by(*modules):
     """Which modules a new interpreter has after importing these."""
     code = f"import sys, {', '.join(modules)}; print(*sys.modules)"
-    loaded = subprocess.check_output([sys.executable, "-c", code], cwd=SOURCE, text=True)
+    loaded = subprocess.check_output([sys.executable, "-c", code], text=True)
     return {module.partition(".")[0] for module in loaded.split()}
 
 

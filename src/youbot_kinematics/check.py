@@ -22,7 +22,7 @@ from .contract import (
     shape_problems,
     trajectory_from_command,
 )
-from .kinematics import dh_frames, geometric_jacobian
+from .kinematics import dh_frames, jacobian
 from .singularity import smallest_singular_value
 from .trajectory import Trajectory, interpolate
 
@@ -202,7 +202,7 @@ def _peaks(trajectory: Trajectory, times, checkpoints) -> _Peaks:
         q.max(axis=0),
         np.abs(v).max(axis=0),
         np.abs(a).max(axis=0),
-        float(smallest_singular_value(geometric_jacobian(frames)).min()),
+        float(smallest_singular_value(jacobian(q)).min()),
         _line_distance(trajectory.segments, times, frames[:, -1, :3, 3], checkpoints),
     )
 

@@ -22,36 +22,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import arm
+from . import arm, formulas
 from .exceptions import InputError
-from .planar import inverse_2r, wrap_between
+from .formulas import LAST_ROW_TOLERANCE, POSE_TOLERANCE, ROTATION_TOLERANCE
+from .planar import wrap_between
 
 N_BRANCHES = 4
 BRANCH_NAMES = ("front, elbow +", "front, elbow -", "back, elbow +", "back, elbow -")
-
-#: How far a pose may be tilted out of the arm's plane and still count as asked for exactly, rad.
-POSE_TOLERANCE = 1e-9
-#: A position counts as in a plane, or on joint 1's axis, that it is this near to (m).
-ON_PLANE = 1e-9
-# A tool whose z axis has a smaller horizontal part is vertical.
-_VERTICAL = 1e-9
 
 # The same numbers as in the table above, from their one definition.
 SHOULDER_R, SHOULDER_Z = -arm.A[0], arm.D[0]
 UPPER_ARM, FOREARM = arm.A[1], arm.A[2]
 TOOL_OFFSET, TOOL_LENGTH = arm.A[3], -arm.D[4]
 AZIMUTH_0, ROLL_0 = arm.OFFSET[0], -arm.OFFSET[4]
-
-
-class PlanePose(NamedTuple):
-    """A pose as seen from the arm's plane, reaching forward (index 0) and over the back (1)."""
-
-    azimuth: np.ndarray  # phi, (..., 2) rad
-    radius: np.ndarray  # r, signed, (..., 2) m
-    height: np.ndarray  # z, (...) m
-    pitch: np.ndarray  # beta of the nearest rotation that the arm can give the tool, (..., 2) rad
-    roll: np.ndarray  # gamma of it, (..., 2) rad
-    tilt: np.ndarray  # angle between that rotation and the one asked for, (..., 2) rad
 
 
 class Branches(NamedTuple):
@@ -64,9 +47,7 @@ class Branches(NamedTuple):
 
     joints: np.ndarray  # (..., 4, 5) rad; solutions only where ``valid``, else what comes nearest
     valid: np.ndarray  # (..., 4) bool
-    out_of_reach: (
-        np.ndarray
-    )  # (..., 4) m: wrist beyond the stretched arm (+), inside the folded (-)
+    out_of_reach: np.ndarray  # (..., 4) m: wrist beyond the stretched arm (+), in the folded (-)
     limit_excess: np.ndarray  # (..., 4, 5) rad: below (-) or above (+) the limit, 0 inside
     tilt: np.ndarray  # (..., 4) rad: the tool's z axis out of the arm's plane
 
@@ -105,100 +86,32 @@ def inverse_branches(T, limits: arm.JointLimits, seed=None) -> Branches:
     Raises:
         InputError: T is not an array of rigid transforms.
     """
-    T = as_transforms(T)
-    pose = seeded_plane_pose(T, limits, seed)
-    arm_joints, beyond = plane_joints(pose.radius, pose.height[..., None], pose.pitch)
-
-    joints = np.empty((*T.shape[:-2], 2, 2, arm.DOF))  # front/back, elbow +/-
-    joints[..., 0] = (AZIMUTH_0 - pose.azimuth)[..., None]
-    joints[..., 1:4] = arm_joints
-    joints[..., 4] = (ROLL_0 - pose.roll)[..., None]
-    joints = wrap_into_limits(joints.reshape(*T.shape[:-2], N_BRANCHES, arm.DOF), limits)
-
-    beyond, tilt = np.repeat(beyond, 2, axis=-1), np.repeat(pose.tilt, 2, axis=-1)
-    excess = limits.excess(joints)
-    valid = (beyond == 0) & (tilt <= POSE_TOLERANCE) & (excess == 0).all(axis=-1)
-    return Branches(joints, valid, beyond, excess, tilt)
+    answer = formulas.branches(T, limits.lower, limits.upper, seed)
+    if answer is None:
+        answer = formulas.branches(as_transforms(T), limits.lower, limits.upper, seed)
+    return Branches(*answer)
 
 
-def seeded_plane_pose(T: np.ndarray, limits: arm.JointLimits, seed=None) -> PlanePose:
-    """``plane_pose`` with the azimuth from the seed where it is free; see ``inverse_branches``."""
-    q1 = (limits.lower[0] + limits.upper[0]) / 2 if seed is None else seed[0]
-    free = _azimuth_is_free(T).any()
-    return plane_pose(T, free_azimuth=_free_azimuth(T, limits, q1) if free else 0.0)
+def solutions(T, limits: arm.JointLimits, seed=None) -> np.ndarray:
+    """The valid joints (k, 5) of ``inverse_branches`` for one pose (4, 4), each once.
 
-
-def plane_pose(T: np.ndarray, free_azimuth) -> PlanePose:
-    """Finds the arm's plane for each pose, and the tool's pitch and roll in it.
-
-    The nearest rotation ``Ry(beta) Rz(gamma)`` turns the tool's z axis into the plane on the
-    shortest way; the angle of that turn is the tilt. (It is the rotation that the singular value
-    decomposition of the quaternion's 2x2 matrix [[w, z], [y, x]] gives, in closed form.)
-
-    Args:
-        T: poses (..., 4, 4) in ``base_link``, m.
-        free_azimuth: azimuths, a number or (...) rad, for poses that leave it free: tool vertical
-            on joint 1's axis.
+    Raises:
+        InputError: T is not one rigid transform.
     """
-    x, y, R = T[..., 0, 3], T[..., 1, 3], T[..., :3, :3]
-    front = np.where(_azimuth_is_free(T), free_azimuth, _front_azimuth(x, y, R[..., :, 2]))
-    azimuth = np.stack([front, front + np.pi], axis=-1)
-    cos, sin = np.cos(azimuth), np.sin(azimuth)
-    radius = x[..., None] * cos + y[..., None] * sin
-
-    # B = Rz(-azimuth) R, row by row: along the plane, across it, up.
-    R = R[..., None, :, :]
-    along = cos[..., None] * R[..., 0, :] + sin[..., None] * R[..., 1, :]
-    across = cos[..., None] * R[..., 1, :] - sin[..., None] * R[..., 0, :]
-    up = R[..., 2, :]
-    pitch = np.arctan2(along[..., 2], up[..., 2])
-    # A = Ry(-pitch) B turns about z by the roll, as nearly as it can: maximise trace(Rz(-roll) A).
-    c, s = np.cos(pitch)[..., None], np.sin(pitch)[..., None]
-    a0, a1 = c * along - s * up, across
-    roll = np.arctan2(a1[..., 0] - a0[..., 1], a0[..., 0] + a1[..., 1])
-    tilt = np.arcsin(np.minimum(np.abs(across[..., 2]), 1.0))
-    return PlanePose(azimuth, radius, T[..., 2, 3], pitch, roll, tilt)
+    found = formulas.solutions(T, limits.lower, limits.upper, seed)
+    if found is None:
+        found = formulas.solutions(as_transform(T), limits.lower, limits.upper, seed)
+    return found
 
 
-def _azimuth_is_free(T):
-    """Whether poses (..., 4, 4) have the tool on joint 1's axis, and vertical: bool (...)."""
-    radius, horizontal = (np.hypot(T[..., 0, i], T[..., 1, i]) for i in (3, 2))
-    return (radius < ON_PLANE) & (horizontal <= _VERTICAL)
+def plane_azimuths(T, limits: arm.JointLimits, seed=None) -> tuple[float, float]:
+    """Azimuths (rad) of the arm's plane for a pose (4, 4): reaching forward, and over the back.
 
-
-def _free_azimuth(T, limits, q1):
-    """Azimuths (...) nearest to joint 1 at q1 that keep joints 1 and 5 inside, tool vertical.
-
-    Only the sum of the two angles is given if the tool points up, their difference if it points
-    down: ``q5 = k - up * q1``. So either joint 1 can stay at q1, or one of the two is on a limit.
+    Raises:
+        InputError: T is not one rigid transform.
     """
-    up = np.where(T[..., 2, 2] > 0, 1.0, -1.0)
-    turn = up * np.arctan2(up * T[..., 1, 0], up * T[..., 0, 0])
-    k = ROLL_0 + up * AZIMUTH_0 - turn
-    lower, upper = limits.lower[[0, 4]], limits.upper[[0, 4]]
-    choices = [
-        np.full(up.shape, value) for value in (np.clip(q1, lower[0], upper[0]), lower[0], upper[0])
-    ]
-    choices += [up * (k - lower[1]), up * (k - upper[1])]
-    first = np.stack(choices, axis=-1)
-    pair = np.stack([first, k[..., None] - up[..., None] * first], axis=-1)
-    pair = wrap_between(pair, lower, upper)
-    inside = ((pair >= lower) & (pair <= upper)).all(axis=-1)
-    best = np.argmin(np.where(inside, np.abs(pair[..., 0] - q1), np.inf), axis=-1)
-    return AZIMUTH_0 - np.take_along_axis(pair[..., 0], best[..., None], axis=-1)[..., 0]
-
-
-def _front_azimuth(x, y, tool_z):
-    """Azimuth (...) of the plane of an arm that reaches forward to (x, y), m."""
-    by_position, by_tool = np.arctan2(y, x), np.arctan2(tool_z[..., 1], tool_z[..., 0])
-    radius, horizontal = np.hypot(x, y), np.hypot(tool_z[..., 0], tool_z[..., 1])
-    off_plane = np.abs(y * np.cos(by_tool) - x * np.sin(by_tool))
-    # The tool may lean back over the axis: to the front is where the position is.
-    leans_back = x * np.cos(by_tool) + y * np.sin(by_tool) < -ON_PLANE
-    by_tool = np.where(leans_back, by_tool + np.pi, by_tool)
-    # The nearer to joint 1's axis, the more rounding blurs the azimuth of the position; the more
-    # upright the tool, that of its z axis. The longer arrow tells the plane better.
-    return np.where((horizontal > radius) & (off_plane < ON_PLANE), by_tool, by_position)
+    front = formulas.azimuth(as_transform(T), limits.lower, limits.upper, seed)
+    return front, front + np.pi
 
 
 def plane_joints(radius, height, pitch):
@@ -211,14 +124,7 @@ def plane_joints(radius, height, pitch):
         ``(joints, beyond)``: (..., 2, 3) rad, not wrapped, elbow + and -; and by how much the wrist
         is out of reach, (...) m, as ``planar.inverse_2r`` has it.
     """
-    sin, cos = np.sin(pitch), np.cos(pitch)
-    wrist_r = radius - SHOULDER_R + TOOL_OFFSET * cos - TOOL_LENGTH * sin
-    wrist_z = height - SHOULDER_Z - TOOL_OFFSET * sin - TOOL_LENGTH * cos
-    # Angles count from the vertical, towards r: z is the planar arm's x axis, r its y axis.
-    t2, elbow, beyond = inverse_2r(wrist_z, wrist_r, UPPER_ARM, FOREARM)
-    t23 = t2 + elbow
-    t4 = np.broadcast_to(pitch, beyond.shape)[..., None] - t23
-    return np.stack([t2, elbow, t4], axis=-1) - arm.OFFSET[1:4], beyond
+    return formulas.bend(np.stack(np.broadcast_arrays(radius, height, pitch), axis=-1))
 
 
 def wrap_into_limits(q: np.ndarray, limits: arm.JointLimits) -> np.ndarray:
@@ -229,7 +135,7 @@ def wrap_into_limits(q: np.ndarray, limits: arm.JointLimits) -> np.ndarray:
     return wrap_between(q, limits.lower, limits.upper)
 
 
-def as_transforms(T, tolerance: float = 1e-6) -> np.ndarray:
+def as_transforms(T, tolerance: float = ROTATION_TOLERANCE) -> np.ndarray:
     """``T`` as a float array (..., 4, 4) of rigid transforms.
 
     Raises:
@@ -241,15 +147,22 @@ def as_transforms(T, tolerance: float = 1e-6) -> np.ndarray:
         raise InputError(f"a pose must be an array (4, 4) of numbers, not {T!r}") from None
     if T.shape[-2:] != (4, 4):
         raise InputError(f"a pose must have shape (4, 4) or (..., 4, 4); got {T.shape}")
-    if not np.isfinite(T).all():
+    finite, error, left_handed, last_row = formulas.flaws(T)
+    if not finite:
         raise InputError("a pose must be finite; it has NaN or infinity in it")
-    R = T[..., :3, :3]
-    error = np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max(initial=0.0)
-    if error > tolerance or (np.linalg.det(R) < 0).any():
+    if error > tolerance or left_handed:
         raise InputError(
             f"a pose must hold a rotation matrix; R^T R is off the identity by {error:.2g}"
             " or the frame is left-handed: normalise it, or ask for nearest_reachable_pose"
         )
-    if np.abs(T[..., 3, :] - [0, 0, 0, 1]).max(initial=0.0) > 1e-9:
+    if last_row > LAST_ROW_TOLERANCE:
         raise InputError("the last row of a pose must be 0 0 0 1")
+    return T
+
+
+def as_transform(T) -> np.ndarray:
+    """``T`` as one rigid transform (4, 4); raises InputError if it is none, or several."""
+    T = as_transforms(T)
+    if T.ndim != 2:
+        raise InputError(f"this takes one pose (4, 4), not {T.shape}; inverse_branches takes many")
     return T

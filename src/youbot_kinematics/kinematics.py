@@ -1,4 +1,4 @@
-"""Kinematics of the arm: Denavit-Hartenberg forward kinematics, Jacobian, singularities.
+"""Kinematics of the arm: Denavit-Hartenberg forward kinematics, Jacobian, singularities, inverse.
 
 Everything broadcasts: joints are (5,) or (..., 5), results (4, 4) or (..., 4, 4), and so on.
 Sources: Siciliano et al., "Robotics: Modelling, Planning and Control" (2009), sections 2.8
@@ -11,11 +11,10 @@ import operator
 
 import numpy as np
 
-from . import arm, posture, singularity
+from . import arm, formulas, posture, singularity
 from .exceptions import InputError
-from .inverse import Branches, inverse_branches
+from .inverse import Branches, inverse_branches, solutions
 from .nearest import NearestPose, nearest_reachable_pose
-from .planar import distinct
 from .position import PositionSolutions, inverse_position
 from .selection import select_solution
 from .singularity import SINGULARITY_THRESHOLD
@@ -60,7 +59,7 @@ def as_joint_number(number) -> int:
     return index
 
 
-def dh_frames(q: np.ndarray) -> np.ndarray:
+def dh_frames(q) -> np.ndarray:
     """Poses of the base and of the five Denavit-Hartenberg frames in ``base_link``.
 
     Args:
@@ -68,39 +67,28 @@ def dh_frames(q: np.ndarray) -> np.ndarray:
 
     Returns:
         (..., 6, 4, 4): index 0 is the base (identity), 5 the tool; translations in m.
+
+    Raises:
+        InputError: q has another shape, or is not finite.
     """
-    theta = arm.THETA_0 + arm.OFFSET + arm.SIGN * q
-    cos, sin = np.cos(theta), np.sin(theta)
-    cos_alpha, sin_alpha = np.cos(arm.ALPHA), np.sin(arm.ALPHA)
-    link = np.zeros((*theta.shape, 4, 4))
-    link[..., 0, 0], link[..., 1, 0] = cos, sin
-    link[..., 0, 1], link[..., 1, 1], link[..., 2, 1] = -sin * cos_alpha, cos * cos_alpha, sin_alpha
-    link[..., 0, 2], link[..., 1, 2], link[..., 2, 2] = sin * sin_alpha, -cos * sin_alpha, cos_alpha
-    link[..., 0, 3], link[..., 1, 3], link[..., 2, 3] = arm.A * cos, arm.A * sin, arm.D
-    link[..., 3, 3] = 1.0
-
-    frames = np.empty((*q.shape[:-1], arm.DOF + 1, 4, 4))
-    frames[..., 0, :, :] = np.eye(4)
-    for i in range(arm.DOF):
-        frames[..., i + 1, :, :] = frames[..., i, :, :] @ link[..., i, :, :]
-    return frames
+    frames = formulas.dh_frames(q)
+    return formulas.dh_frames(as_joints(q)) if frames is None else frames
 
 
-def geometric_jacobian(frames: np.ndarray) -> np.ndarray:
-    """Geometric Jacobian of the tool from the arm's Denavit-Hartenberg frames.
-
-    Column i is ``SIGN_i * (z x (p - o), z)`` with z axis z and origin o of frame i - 1, and p the
-    tool's position.
+def jacobian(q) -> np.ndarray:
+    """Geometric Jacobian of the tool, linear (m/rad) over angular velocity (rad/rad).
 
     Args:
-        frames: (..., 6, 4, 4) as ``dh_frames`` gives them.
+        q: joint positions (..., 5), rad.
 
     Returns:
-        (..., 6, 5): linear (m/rad) over angular velocity (rad/rad) of the tool in ``base_link``.
+        (..., 6, 5) in ``base_link``.
+
+    Raises:
+        InputError: q has another shape, or is not finite.
     """
-    z = frames[..., :-1, :3, 2] * arm.SIGN[:, None]
-    lever = frames[..., -1:, :3, 3] - frames[..., :-1, :3, 3]
-    return np.swapaxes(np.concatenate([np.cross(z, lever), z], axis=-1), -1, -2)
+    J = formulas.jacobian(q)
+    return formulas.jacobian(as_joints(q)) if J is None else J
 
 
 class Kinematics:
@@ -191,7 +179,10 @@ class YoubotKinematics(Kinematics):
         Raises:
             InputError: q has another shape or is not finite, or there is no such frame.
         """
-        return dh_frames(as_joints(q))[..., as_joint_number(up_to_joint), :, :].copy()
+        if up_to_joint == arm.DOF:
+            T = formulas.tool_pose(q)
+            return formulas.tool_pose(as_joints(q)) if T is None else T
+        return dh_frames(q)[..., as_joint_number(up_to_joint), :, :].copy()
 
     def get_jacobian(self, q) -> np.ndarray:
         """Geometric Jacobian of the tool, linear over angular velocity, in ``base_link``.
@@ -205,7 +196,7 @@ class YoubotKinematics(Kinematics):
         Raises:
             InputError: q has another shape, or is not finite.
         """
-        return geometric_jacobian(dh_frames(as_joints(q)))
+        return jacobian(q)
 
     def inverse_kinematics(self, T, seed=None) -> np.ndarray:
         """Every joint position inside the limits that brings the tool to a pose, in closed form.
@@ -225,13 +216,7 @@ class YoubotKinematics(Kinematics):
         Raises:
             InputError: T is not one rigid transform.
         """
-        branches = self.inverse_branches(T, seed)
-        if branches.valid.ndim != 1:
-            raise InputError(
-                f"inverse_kinematics takes one pose (4, 4), not {np.shape(T)};"
-                " inverse_branches takes batches"
-            )
-        return distinct(branches.joints[branches.valid])
+        return solutions(T, self.limits, None if seed is None else _as_seed(seed))
 
     def inverse_branches(self, T, seed=None) -> Branches:
         """The whole answer for poses (..., 4, 4): see ``inverse.inverse_branches``."""

@@ -20,7 +20,6 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from . import arm
 from .exceptions import InputError
@@ -31,7 +30,7 @@ from .inverse import (
     UPPER_ARM,
     as_transforms,
     inverse_branches,
-    seeded_plane_pose,
+    plane_azimuths,
 )
 from .planar import distinct, wrap_between
 from .position import SHOULDER, TOOL, plane_pitch_intervals
@@ -81,14 +80,21 @@ def nearest_reachable_pose(T, limits: arm.JointLimits, seed=None) -> NearestPose
     reached = inverse_branches(T, limits, seed)
     if reached.valid.any():
         return NearestPose(T, 0.0, 0.0, distinct(reached.joints[reached.valid]))
-    places, distance = _nearest_places(T, seeded_plane_pose(T, limits, seed).azimuth, limits)
+    places, distance = _nearest_places(T, plane_azimuths(T, limits, seed), limits)
     pose = _likest(T, places, limits)
     if distance == 0:
         pose[:3, 3] = T[:3, 3]
     solved = inverse_branches(pose, limits, seed)
-    turn = Rotation.from_matrix(pose[:3, :3].T @ T[:3, :3])
+    turn = _rotations().from_matrix(pose[:3, :3].T @ T[:3, :3])
     solutions = distinct(solved.joints[solved.valid])
     return NearestPose(pose, distance, float(turn.magnitude()), solutions)
+
+
+def _rotations():
+    """SciPy's rotations, which take longer to import than all of the kinematics."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation
 
 
 def _orthonormal(T) -> np.ndarray:
@@ -183,7 +189,7 @@ def _likest(T, places, limits):
     ]
     _, pitch, roll, place = max(best, key=lambda choice: choice[0])
     pose = np.eye(4)
-    pose[:3, :3] = Rotation.from_euler("ZYZ", [place.azimuth, pitch, roll]).as_matrix()
+    pose[:3, :3] = _rotations().from_euler("ZYZ", [place.azimuth, pitch, roll]).as_matrix()
     pose[:3, 3] = [
         place.radius * np.cos(place.azimuth),
         place.radius * np.sin(place.azimuth),
@@ -194,6 +200,7 @@ def _likest(T, places, limits):
 
 def _half_angle_matrix(T, place) -> np.ndarray:
     """The matrix M (2, 2) of the module's text for T's rotation as seen in a plane of the arm."""
+    Rotation = _rotations()
     in_plane = Rotation.from_euler("Z", -place.azimuth) * Rotation.from_matrix(T[:3, :3])
     x, y, z, w = in_plane.as_quat()
     return np.array([[w, z], [y, x]])

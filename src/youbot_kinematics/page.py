@@ -18,7 +18,7 @@ from .check import distance_to_line
 from .colours import KIND_COLOURS
 from .exceptions import InputError
 from .files import new_file
-from .kinematics import dh_frames, geometric_jacobian
+from .kinematics import dh_frames, jacobian
 from .resources import resource_path
 from .shapes import arm_shapes, mesh
 from .singularity import smallest_singular_value
@@ -86,7 +86,7 @@ def page_data(plan) -> dict:
         "joints": _joints(plan, states),
         "effort": _effort(plan, states),
         "distance": _distance(plan, states, frames[:, -1, :3, 3]),
-        "singular_value": _rounded(smallest_singular_value(geometric_jacobian(frames))),
+        "singular_value": _rounded(smallest_singular_value(jacobian(states.positions))),
         "report": _rows(plan),
     }
 

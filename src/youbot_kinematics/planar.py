@@ -12,18 +12,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
+from . import formulas
 from .exceptions import InputError
 from .intervals import bound_directions, feasible_intervals, turned_next_to
 from .selection import cost, select_solution
 
-# An elbow whose cosine is so near to 1 is straight: rounding, as a part of the squares in it.
-_COSINE_ROUNDING = 1e-14
-# Points this little out of reach (m) are on its edge: others' forward kinematics put them there.
-_EDGE = 1e-10
-# A joint this little outside of its limit, by rounding, is on the limit (rad).
-LIMIT_ROUNDING = 1e-9
 # Samples of the free angle on an interval, before the best one is polished.
 _SAMPLES = 91
 
@@ -52,28 +46,16 @@ def inverse_2r(x, y, l1: float, l2: float):
         reached. At the edge of reach both elbows are the same, exactly straight or folded. On the
         shoulder itself (links of one length), any shoulder angle will do and one is given.
     """
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    distance = np.hypot(x, y)
-    squares, product = l1**2 + l2**2, 2 * l1 * l2
-    cos_b, rounding = (distance**2 - squares) / product, _COSINE_ROUNDING * squares / product
-    stretched, folded = cos_b >= 1 - rounding, cos_b <= -1 + rounding
-    beyond = np.maximum(distance - (l1 + l2), 0) + np.minimum(distance - abs(l1 - l2), 0)
-    beyond = np.where(np.abs(beyond) <= _EDGE, 0.0, beyond)
-    elbow = np.arccos(np.where(stretched, 1.0, np.where(folded, -1.0, cos_b)))
-    # Folded to both sides is the same: pi, not -pi.
-    b = np.stack([elbow, np.where(folded, elbow, -elbow)], axis=-1)
-    a = np.arctan2(y, x)[..., None] - np.arctan2(l2 * np.sin(b), l1 + l2 * np.cos(b))
-    return a, b, beyond
+    points = np.stack(np.broadcast_arrays(x, y), axis=-1)
+    return formulas.two_links(points, l1, l2)
 
 
 def wrap_between(q: np.ndarray, lower, upper) -> np.ndarray:
     """Angles (..., n) turned by whole turns to where they are next to their range, rad.
 
-    A value outside of its limit by no more than ``LIMIT_ROUNDING`` is set on the limit.
+    A value outside of its limit by no more than ``formulas.LIMIT_ROUNDING`` is set on the limit.
     """
-    wrapped = q + 2 * np.pi * np.round(((lower + upper) / 2 - q) / (2 * np.pi))
-    on_limit = np.minimum(np.maximum(wrapped, lower), upper)
-    return np.where(np.abs(wrapped - on_limit) <= LIMIT_ROUNDING, on_limit, wrapped)
+    return formulas.turned(q, lower, upper)
 
 
 def distinct(solutions: np.ndarray) -> np.ndarray:
@@ -264,6 +246,8 @@ class PlanarArm4R(PlanarArm):
 
 def _least(price, elbow: int, low: float, high: float) -> float:
     """The angle between low and high of least price: the best sample, polished."""
+    from scipy.optimize import minimize_scalar  # slow to import, and only this needs it
+
     samples = np.linspace(low, high, _SAMPLES)
     prices = price(samples, elbow)
     i = int(np.argmin(prices))

@@ -17,11 +17,11 @@ import numpy as np
 
 from . import arm
 from .exceptions import InputError
+from .formulas import LIMIT_ROUNDING, ON_PLANE
 from .intervals import bound_directions, feasible_intervals, turned_next_to
 from .inverse import (
     AZIMUTH_0,
     FOREARM,
-    ON_PLANE,
     ROLL_0,
     SHOULDER_R,
     SHOULDER_Z,
@@ -31,7 +31,7 @@ from .inverse import (
     plane_joints,
     wrap_into_limits,
 )
-from .planar import LIMIT_ROUNDING, distinct, wrap_between
+from .planar import distinct, wrap_between
 
 #: The shoulder in the arm's plane, z + i r in m: angles count from the vertical, towards r.
 SHOULDER = complex(SHOULDER_Z, SHOULDER_R)

@@ -1,4 +1,4 @@
-"""How a node ends before its work is done: told so by a signal, or without a ROS master any more."""
+"""How a node ends before its work is done: told to by a signal, or left by its ROS master."""
 
 from __future__ import annotations
 
