@@ -1,5 +1,7 @@
 """Forward kinematics, Jacobian and singularities, against formulas that use none of their code."""
 
+import sys
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -14,28 +16,19 @@ def random_joints(n, seed=0):
     return np.random.default_rng(seed).uniform(LIMITS.lower, LIMITS.upper, (n, 5))
 
 
-def closed_expression(q):
-    """Tool position and rotation by trigonometry in the arm's vertical plane."""
-    q1, q2, q3, q4, q5 = q.T
-    phi, t2 = np.deg2rad(170) - q1, q2 - np.deg2rad(65)
-    t23 = t2 + q3 + np.deg2rad(146)
-    beta, gamma = t23 + q4 - np.deg2rad(102.5), np.deg2rad(167.5) - q5
-    r = (
-        0.033
-        + 0.155 * np.sin(t2)
-        + 0.135 * np.sin(t23)
-        - 0.002 * np.cos(beta)
-        + 0.185 * np.sin(beta)
-    )
-    z = (
-        0.145
-        + 0.155 * np.cos(t2)
-        + 0.135 * np.cos(t23)
-        + 0.002 * np.sin(beta)
-        + 0.185 * np.cos(beta)
-    )
-    rotation = Rotation.from_euler("ZYZ", np.stack([phi, beta, gamma], axis=-1))
-    return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1), rotation.as_matrix()
+def dh_product(q):
+    """Poses of the base and the five frames: the product of Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    theta = arm.THETA_0 + arm.OFFSET + arm.SIGN * q
+    frames = [np.broadcast_to(np.eye(4), (len(q), 4, 4))]
+    for i in range(5):
+        link = np.zeros((len(q), 4, 4))
+        turn = Rotation.from_euler("Z", theta[:, i]) * Rotation.from_euler("X", arm.ALPHA[i])
+        link[:, :3, :3] = turn.as_matrix()
+        link[:, 0, 3] = arm.A[i] * np.cos(theta[:, i])
+        link[:, 1, 3] = arm.A[i] * np.sin(theta[:, i])
+        link[:, 2, 3], link[:, 3, 3] = arm.D[i], 1
+        frames.append(frames[-1] @ link)
+    return frames
 
 
 def elbow_singular(wrist=1.0):
@@ -50,13 +43,12 @@ def tool_at(radius, height, pitch):
     return KIN.inverse_kinematics(T, seed=arm.UPRIGHT)[0]
 
 
-def test_forward_kinematics_is_the_closed_expression_of_the_plane():
+def test_every_frame_is_the_product_of_the_denavit_hartenberg_transforms():
     q = random_joints(10_000)
-    T = KIN.forward_kinematics(q)
-    position, rotation = closed_expression(q)
-    assert np.abs(T[:, :3, 3] - position).max() < 1e-12
-    assert np.abs(T[:, :3, :3] - rotation).max() < 1e-12
-    assert (T[:, 3] == [0, 0, 0, 1]).all()
+    for number, frame in enumerate(dh_product(q)):
+        T = KIN.forward_kinematics(q, number)
+        assert np.abs(T - frame).max() < 1e-14
+        assert (T[:, 3] == [0, 0, 0, 1]).all()
 
 
 def test_the_frames_before_the_tool_are_on_the_joints_behind_them():
@@ -104,7 +96,54 @@ def test_a_batch_of_any_shape_gives_what_its_members_give():
         for index in np.ndindex(2, 3):
             assert np.allclose(batch[index], function(q[index]), rtol=0, atol=1e-15)
         assert function(q[:0]).shape == (0, 3, *shape)
-    assert (KIN.forward_kinematics(q.tolist()) == KIN.forward_kinematics(q)).all()
+
+
+@pytest.mark.parametrize(
+    "as_given",
+    [
+        np.ndarray.tolist,
+        lambda q: q.astype(">f8"),
+        lambda q: np.asfortranarray(q),
+        lambda q: np.repeat(q, 2, axis=0)[::2],
+        lambda q: np.repeat(q, 2, axis=1)[:, ::2],
+        lambda q: q.astype(object),
+        lambda q: np.ma.masked_array(q),
+    ],
+)
+def test_joints_and_poses_may_come_in_any_array_of_numbers(as_given):
+    q = random_joints(6)
+    T, J = KIN.forward_kinematics(q), KIN.get_jacobian(q)
+    assert (KIN.forward_kinematics(as_given(q)) == T).all()
+    assert (KIN.get_jacobian(as_given(q)) == J).all()
+    for pose in T:
+        assert (KIN.inverse_kinematics(as_given(pose)) == KIN.inverse_kinematics(pose)).all()
+    whole = np.ones((2, 5), dtype=int)
+    assert (KIN.forward_kinematics(whole) == KIN.forward_kinematics(whole.astype(float))).all()
+
+
+def test_nothing_holds_on_to_what_it_was_given():
+    q, T = random_joints(3), KIN.forward_kinematics(random_joints(3))
+    broken, odd = np.full((2, 5), np.nan), np.zeros((4, 4))
+    given = [q, T, T[0], broken, odd, KIN.limits.lower, KIN.limits.upper]
+
+    def use():
+        KIN.forward_kinematics(q), KIN.forward_kinematics(q, 3), KIN.get_jacobian(q)
+        KIN.inverse_branches(T), KIN.inverse_kinematics(given[2], seed=q[0])
+        KIN.nearest_reachable_pose(given[2])
+        for function, argument in [
+            (KIN.forward_kinematics, broken),
+            (KIN.get_jacobian, broken),
+            (KIN.inverse_kinematics, T),
+            (KIN.inverse_kinematics, odd),
+            (KIN.inverse_branches, odd),
+        ]:
+            with pytest.raises(InputError):
+                function(argument)
+
+    before = [sys.getrefcount(array) for array in given]
+    for _ in range(10):
+        use()
+    assert [sys.getrefcount(array) for array in given] == before
 
 
 @pytest.mark.parametrize(
@@ -167,7 +206,7 @@ def test_singular_values_are_those_of_the_two_motions_in_and_across_the_plane():
     q = random_joints(1000)
     elbow = q[:, 2] + np.deg2rad(146)
     beta = q[:, 1:4].sum(axis=1) + np.deg2rad(-65 + 146 - 102.5)
-    radius = np.hypot(*closed_expression(q)[0][:, :2].T)
+    radius = np.hypot(*KIN.forward_kinematics(q)[:, :2, 3].T)
     volume = 0.155 * 0.135 * np.abs(np.sin(elbow)) * np.hypot(radius, np.sin(beta))
     assert np.allclose(np.linalg.svd(KIN.get_jacobian(q), compute_uv=False).prod(axis=1), volume)
 
