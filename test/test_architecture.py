@@ -17,15 +17,16 @@ ROS_FREE = """
     bag_records rosbag1 bag_reader target_forms targets tour path trajectory track differential
     resolve.lines resolve.smoothing resolve.search resolve.route resolve.graph resolve.itinerary
     resolve.pitch resolve.roll resolve resolve.explain
-    coursework optimal timing contract controller check parameters interface solvers planner
+    coursework optimal timing contract controller check parameters interface solvers planner summary
     bag_writer export plot page make_bag plan_job plan_bags plan_options plan_bag
     plan_reader check_trajectory
     youbot_kinematics
 """.split()
 ROS_BASED = """
-    messages
+    state_messages messages
     nodes nodes.ending nodes.master nodes.common nodes.frames nodes.joint_states
-    nodes.arm_simulator nodes.view nodes.planner nodes.tool_trail nodes.joint_sliders nodes.demo
+    nodes.arm_simulator nodes.view nodes.planner nodes.planner_start
+    nodes.tool_trail nodes.joint_sliders nodes.demo
 """.split()
 ORDER = ROS_FREE + ROS_BASED
 

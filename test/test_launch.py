@@ -18,7 +18,7 @@ except rospkg.ResourceNotFound:
     pytest.skip("needs a ROS environment with this package", allow_module_level=True)
 
 from youbot_kinematics import interface  # noqa: E402
-from youbot_kinematics.nodes.planner import NodeParameters  # noqa: E402
+from youbot_kinematics.interface import NodeParameters  # noqa: E402
 from youbot_kinematics.resources import resource_path  # noqa: E402
 
 GIVEN = {

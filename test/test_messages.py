@@ -23,7 +23,7 @@ for package in ("geometry", "nav", "sensor", "std", "trajectory", "visualization
 from sensor_msgs.msg import JointState  # noqa: E402
 from visualization_msgs.msg import Marker  # noqa: E402
 
-from youbot_kinematics import messages  # noqa: E402
+from youbot_kinematics import messages, state_messages  # noqa: E402
 
 RNG = np.random.default_rng(2)
 LIMITS = joint_limits("urdf")
@@ -81,15 +81,15 @@ class TestTrajectory:
 class TestJointStates:
     def test_there_and_back(self):
         q, v = RNG.uniform(-1, 1, (2, 5))
-        message = over_the_wire(messages.joint_state_message(genpy.Time(7), q, v))
-        np.testing.assert_array_equal(messages.joints_from_message(message), q)
-        np.testing.assert_array_equal(messages.joints_from_message(message, "velocity"), v)
+        message = over_the_wire(state_messages.joint_state_message(genpy.Time(7), q, v))
+        np.testing.assert_array_equal(state_messages.joints_from_message(message), q)
+        np.testing.assert_array_equal(state_messages.joints_from_message(message, "velocity"), v)
         assert message.header.stamp == genpy.Time(7)
 
     def test_joints_are_taken_by_name(self):
         names = ["wheel", *JOINT_NAMES[::-1], "gripper"]
         message = JointState(name=names, position=[9.0, 5, 4, 3, 2, 1, 9.0])
-        np.testing.assert_array_equal(messages.joints_from_message(message), [1, 2, 3, 4, 5])
+        np.testing.assert_array_equal(state_messages.joints_from_message(message), [1, 2, 3, 4, 5])
 
     @pytest.mark.parametrize(
         "names, position",
@@ -106,11 +106,11 @@ class TestJointStates:
     )
     def test_what_is_incomplete_ambiguous_or_not_finite_is_none(self, names, position):
         message = JointState(name=list(names), position=position)
-        assert messages.joints_from_message(message) is None
+        assert state_messages.joints_from_message(message) is None
 
     def test_a_wheel_that_is_not_finite_does_not_matter(self):
         message = JointState(name=["wheel", *JOINT_NAMES], position=[float("nan"), 1, 2, 3, 4, 5])
-        np.testing.assert_array_equal(messages.joints_from_message(message), [1, 2, 3, 4, 5])
+        np.testing.assert_array_equal(state_messages.joints_from_message(message), [1, 2, 3, 4, 5])
 
 
 class TestMarkers:

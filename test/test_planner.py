@@ -6,8 +6,8 @@ import pytest
 from youbot_kinematics import InputError, PlanningError, YoubotKinematics
 from youbot_kinematics.make_bag import random_joints
 from youbot_kinematics.parameters import Parameters
-from youbot_kinematics.plan_bag import summary
 from youbot_kinematics.planner import plan
+from youbot_kinematics.summary import summary
 from youbot_kinematics.targets import Targets
 from youbot_kinematics.trajectory import interpolate
 

@@ -6,9 +6,6 @@ import logging
 from contextlib import contextmanager
 from pathlib import Path
 
-from rosbags.highlevel import AnyReader
-from rosbags.typesys import Stores, get_typestore
-
 from .exceptions import BagError, InputError, YoubotError
 from .rosbag1 import MAGIC, open_rosbag1
 
@@ -48,6 +45,9 @@ def open_bag(path: Path):
                 _log.warning("%s: %s", path, bag.warning)
             yield bag
         return
+    from rosbags.highlevel import AnyReader  # slow to import, and only this needs it
+    from rosbags.typesys import Stores, get_typestore
+
     with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         yield reader
 

@@ -1,4 +1,4 @@
-"""Arrays <-> ROS messages: conversions only, no node, no clock.
+"""Trajectories and markers <-> ROS messages: conversions only, no node, no clock.
 
 Everything is in ``base_link``, in SI units. Headers have stamp zero unless a time is given: for a
 trajectory it means "start now", for RViz "whenever".
@@ -11,7 +11,6 @@ import numpy as np
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Vector3
 from nav_msgs.msg import Path
 from scipy.spatial.transform import Rotation
-from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from visualization_msgs.msg import Marker, MarkerArray
@@ -69,35 +68,6 @@ def command_from_message(message: JointTrajectory) -> Command:
         accelerations=[p.accelerations for p in points],
         stamp=message.header.stamp.to_nsec(),
     )
-
-
-# Joint states
-
-
-def joint_state_message(stamp: genpy.Time, positions, velocities) -> JointState:
-    """State of the arm's joints at a time: positions (5,) rad, velocities (5,) rad/s."""
-    message = JointState(name=list(arm.JOINT_NAMES))
-    message.header.stamp = stamp
-    message.position, message.velocity = list(positions), list(velocities)
-    return message
-
-
-def joints_from_message(message: JointState, field: str = "position") -> np.ndarray | None:
-    """The arm's five joints of a message that may have others (wheels, gripper), in any order.
-
-    Args:
-        message: names, and a value of ``field`` for each.
-        field: ``"position"`` (rad) or ``"velocity"`` (rad/s).
-
-    Returns:
-        (5,) in the arm's order, or None: a joint is missing or named twice, the numbers of names
-        and values differ, or a value is not finite.
-    """
-    names, values = list(message.name), getattr(message, field)
-    if len(names) != len(values) or any(names.count(name) != 1 for name in arm.JOINT_NAMES):
-        return None
-    joints = np.array([values[names.index(name)] for name in arm.JOINT_NAMES], dtype=float)
-    return joints if np.isfinite(joints).all() else None
 
 
 # What RViz shows

@@ -6,17 +6,37 @@ analysis", IEEE Transactions on Robotics 34 (2018).
 
 from __future__ import annotations
 
+import sys
+from contextlib import contextmanager
+from types import ModuleType
+
 import numpy as np
-import toppra
-from toppra.algorithm import TOPPRA
-from toppra.constraint import (
-    DiscretizationType,
-    JointAccelerationConstraint,
-    JointVelocityConstraint,
-)
 
 from .exceptions import PlanningError
 from .trajectory import JointPath
+
+
+@contextmanager
+def _empty_modules(*names):
+    """Empty modules in the place of those that are not loaded, for as long as this lasts."""
+    added = [name for name in names if name not in sys.modules]
+    sys.modules.update({name: ModuleType(name) for name in added})
+    try:
+        yield
+    finally:
+        for name in added:
+            del sys.modules[name]
+
+
+# For pictures of its own, toppra imports what takes longer to load than all that is used here.
+with _empty_modules("matplotlib", "matplotlib.pyplot"):
+    import toppra
+    from toppra.algorithm import TOPPRA
+    from toppra.constraint import (
+        DiscretizationType,
+        JointAccelerationConstraint,
+        JointVelocityConstraint,
+    )
 
 # Points at which toppra looks at a path.
 _MIN_GRID, _MAX_GRID = 100, 1000

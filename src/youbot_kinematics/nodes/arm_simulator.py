@@ -22,8 +22,9 @@ from trajectory_msgs.msg import JointTrajectory
 from .. import arm
 from ..controller import Controller
 from ..exceptions import InputError
-from ..messages import command_from_message, joint_state_message
+from ..messages import command_from_message
 from ..parameters import Checked, parameter
+from ..state_messages import joint_state_message
 from .common import COMMAND_TOPIC, JOINT_STATES_TOPIC, read_parameters, run_node
 
 

@@ -24,11 +24,11 @@ from sensor_msgs.msg import JointState
 
 from ..exceptions import YoubotError
 from ..kinematics import YoubotKinematics
-from ..messages import joints_from_message
-from ..plan_bag import summary
 from ..planner import Plan, plan
 from ..plot import plot_plan
 from ..resources import resource_path
+from ..state_messages import joints_from_message
+from ..summary import summary
 from ..targets import load_targets
 from ..trajectory import Trajectory, interpolate
 from .common import FAILED, JOINT_STATES_TOPIC, wait_for
@@ -212,7 +212,7 @@ def print_outcome(planned: Plan, times: np.ndarray, joints: np.ndarray) -> bool:
 
 
 def show(name: str, value) -> None:
-    """A line in the columns of ``plan_bag.summary``."""
+    """A line in the columns of ``summary``."""
     print(f"{name:<19} {value}", flush=True)
 
 

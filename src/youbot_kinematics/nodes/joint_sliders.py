@@ -14,8 +14,8 @@ from sensor_msgs.msg import JointState
 
 from .. import arm
 from ..exceptions import InputError
-from ..messages import joint_state_message
 from ..parameters import Checked, parameter
+from ..state_messages import joint_state_message
 from .common import JOINT_STATES_TOPIC, read_parameters, run_node
 
 RESOLUTION = 0.001  # rad

@@ -9,7 +9,7 @@ import rospy
 from sensor_msgs.msg import JointState
 
 from .. import arm
-from ..messages import joints_from_message
+from ..state_messages import joints_from_message
 from .common import JOINT_STATES_TOPIC
 
 # The arm stands once no joint has moved by STILL (rad) for SETTLED (s). Positions tell it better

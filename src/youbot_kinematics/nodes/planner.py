@@ -18,11 +18,11 @@ from .. import arm
 from ..exceptions import YoubotError
 from ..interface import REPLAN, NodeParameters
 from ..messages import trajectory_message
-from ..plan_bag import summary
 from ..planner import Plan, plan
 from ..progress_bar import logged
+from ..summary import summary
 from ..targets import load_targets
-from .common import COMMAND_TOPIC, read_parameters, run_node, wait_for
+from .common import COMMAND_TOPIC, wait_for
 from .frames import T_base_from
 from .joint_states import JointStates
 from .master import other_publishers
@@ -42,11 +42,15 @@ class NotSentError(YoubotError):
 class PlannerNode:
     """Topics, service and state of the node; planning itself is in ``planner``.
 
+    Args:
+        parameters: of the node.
+        joint_states: where the arm is.
+
     Raises:
         BagError: the bag has no usable targets.
     """
 
-    def __init__(self, parameters: NodeParameters):
+    def __init__(self, parameters: NodeParameters, joint_states: JointStates):
         self.parameters = parameters
         self.targets = load_targets(
             parameters.bag, parameters.topic, parameters.limits, T_base_from
@@ -54,7 +58,7 @@ class PlannerNode:
         if self.targets.warning:
             rospy.logwarn("%s", self.targets.warning)
         self._busy = threading.Lock()
-        self._joint_states = JointStates()
+        self._joint_states = joint_states
         # Not latched, or the arm would move again each time that a controller connects.
         self._command = rospy.Publisher(COMMAND_TOPIC, JointTrajectory, queue_size=1)
         self._view = View()
@@ -144,7 +148,3 @@ class PlannerNode:
             raise NotSentError("refused: the arm is moving; ask again when it stands still")
         problem = self._joint_states.problem or "none come"
         raise NotSentError(f"refused: where the arm is is unknown, for its joint states: {problem}")
-
-
-def main() -> None:
-    run_node("planner_node", lambda: PlannerNode(read_parameters(NodeParameters.from_dict)).run())

@@ -17,8 +17,9 @@ from visualization_msgs.msg import Marker
 
 from ..interface import TRAIL
 from ..kinematics import YoubotKinematics
-from ..messages import joints_from_message, trail_marker
+from ..messages import trail_marker
 from ..parameters import Checked, parameter
+from ..state_messages import joints_from_message
 from .common import JOINT_STATES_TOPIC, PATH_TOPIC, read_parameters, run_node
 
 
