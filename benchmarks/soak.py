@@ -30,8 +30,8 @@ from trajectory_msgs.msg import JointTrajectory
 
 from youbot_kinematics import arm
 from youbot_kinematics.make_bag import make_bag, random_joints
-from youbot_kinematics.messages import joint_state_message
 from youbot_kinematics.nodes.common import COMMAND_TOPIC, JOINT_STATES_TOPIC
+from youbot_kinematics.state_messages import joint_state_message
 from youbot_kinematics.targets import Targets
 
 NODE = "planner_node"
@@ -123,9 +123,11 @@ def _pid(node: str) -> int:
 
 
 @contextmanager
-def running(*command):
+def running(*command, stderr=None):
     """A program, which ends with the block."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=stderr, start_new_session=True
+    )
     try:
         yield process
     finally:

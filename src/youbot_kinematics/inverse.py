@@ -27,7 +27,6 @@ from .exceptions import InputError
 from .formulas import LAST_ROW_TOLERANCE, POSE_TOLERANCE, ROTATION_TOLERANCE
 from .planar import wrap_between
 
-N_BRANCHES = 4
 BRANCH_NAMES = ("front, elbow +", "front, elbow -", "back, elbow +", "back, elbow -")
 
 # The same numbers as in the table above, from their one definition.
