@@ -132,7 +132,8 @@ def test_targets_come_in_the_order_of_time_and_may_be_many(bag):
     np.testing.assert_array_equal(load_targets(bag).joints, many)
 
 
-def test_a_ros_2_bag_is_read_as_well(tmp_path):
+def write_rosbag2(folder, compression=None, **options):
+    """A bag with the first of ``JOINTS``."""
     rosbag2 = pytest.importorskip("rosbags.rosbag2")
     from rosbags.typesys import Stores, get_typestore
 
@@ -141,13 +142,43 @@ def test_a_ros_2_bag_is_read_as_well(tmp_path):
     JointState = types.types["sensor_msgs/msg/JointState"]
     message = JointState(Header(Time(0, 0), ""), list(arm.JOINT_NAMES), JOINTS[0], NONE, NONE)
     try:
-        writer = rosbag2.Writer(tmp_path / "bag", version=8)
-    except TypeError:  # rosbags before 0.10 has one version only
-        writer = rosbag2.Writer(tmp_path / "bag")
+        writer = rosbag2.Writer(folder, version=8, **options)
+    except TypeError:  # rosbags before 0.10 has one version and one storage only
+        writer = rosbag2.Writer(folder)
+    if compression:
+        writer.set_compression(compression, rosbag2.CompressionFormat.ZSTD)
     with writer:
         connection = writer.add_connection("/goals", JointState.__msgtype__, typestore=types)
         writer.write(connection, 10**9, types.serialize_cdr(message, JointState.__msgtype__))
+
+
+def test_a_ros_2_bag_is_read_as_well(tmp_path):
+    write_rosbag2(tmp_path / "bag")
     np.testing.assert_array_equal(load_targets(tmp_path / "bag").joints, JOINTS[:1])
+
+
+def test_an_mcap_is_read_as_well(tmp_path):
+    rosbag2 = pytest.importorskip("rosbags.rosbag2")
+    storage = pytest.importorskip("rosbags.rosbag2.enums").StoragePlugin
+    write_rosbag2(tmp_path / "bag", storage_plugin=storage.MCAP)
+    np.testing.assert_array_equal(load_targets(tmp_path / "bag").joints, JOINTS[:1])
+    write_rosbag2(
+        tmp_path / "packed", rosbag2.CompressionMode.STORAGE, storage_plugin=storage.MCAP
+    )
+    assert "compressed ROS 2 bag" in refusal(tmp_path / "packed")
+
+
+@pytest.mark.parametrize("mode", ["FILE", "MESSAGE"])
+def test_a_compressed_ros_2_bag_which_could_be_of_any_size_is_refused(tmp_path, mode):
+    rosbag2 = pytest.importorskip("rosbags.rosbag2")
+    write_rosbag2(tmp_path / "bag", rosbag2.CompressionMode[mode])
+    assert "compressed ROS 2 bag" in refusal(tmp_path / "bag")
+
+
+@pytest.mark.parametrize("text", ["", "[1, 2]", "a: b", "rosbag2_bagfile_information: 3", "\t{"])
+def test_a_folder_with_metadata_of_something_else_is_refused(tmp_path, text):
+    (tmp_path / "metadata.yaml").write_text(text)
+    assert str(tmp_path) in refusal(tmp_path)
 
 
 # --- what is refused: the file --------------------------------------------------------------------

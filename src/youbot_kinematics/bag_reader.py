@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .exceptions import BagError, InputError, YoubotError
 from .rosbag1 import MAGIC, open_rosbag1
+from .rosbag2 import METADATA, open_rosbag2
 
 _log = logging.getLogger("youbot_kinematics")
 
@@ -45,10 +46,7 @@ def open_bag(path: Path):
                 _log.warning("%s: %s", path, bag.warning)
             yield bag
         return
-    from rosbags.highlevel import AnyReader  # slow to import, and only this needs it
-    from rosbags.typesys import Stores, get_typestore
-
-    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+    with open_rosbag2(path) as reader:
         yield reader
 
 
@@ -114,8 +112,8 @@ def printable(text: str) -> str:
 def _require_bag(path: Path) -> None:
     """Raises BagError for what is not a bag at first sight, OSError for what cannot be read."""
     if path.is_dir():
-        if not (path / "metadata.yaml").is_file():
-            raise BagError("a folder, but without metadata.yaml not a ROS 2 bag")
+        if not (path / METADATA).is_file():
+            raise BagError(f"a folder, but without {METADATA} not a ROS 2 bag")
         return
     if path.exists() and not path.is_file():
         raise BagError("neither a file nor a folder")
