@@ -162,9 +162,7 @@ def test_an_mcap_is_read_as_well(tmp_path):
     storage = pytest.importorskip("rosbags.rosbag2.enums").StoragePlugin
     write_rosbag2(tmp_path / "bag", storage_plugin=storage.MCAP)
     np.testing.assert_array_equal(load_targets(tmp_path / "bag").joints, JOINTS[:1])
-    write_rosbag2(
-        tmp_path / "packed", rosbag2.CompressionMode.STORAGE, storage_plugin=storage.MCAP
-    )
+    write_rosbag2(tmp_path / "packed", rosbag2.CompressionMode.STORAGE, storage_plugin=storage.MCAP)
     assert "compressed ROS 2 bag" in refusal(tmp_path / "packed")
 
 
