@@ -155,6 +155,7 @@ def test_nothing_holds_on_to_what_it_was_given():
         ([0, 0, np.nan, 0, 0], "arm_joint_3 is nan"),
         ([[0] * 5, [0, 0, 0, 0, np.inf]], "arm_joint_5 is inf"),
         ("folded", "must be numbers"),
+        ([10**400] * 5, "must be numbers"),
         ([[0] * 5, [0] * 4], "must be numbers"),
         (None, r"got \(\)"),
     ],

@@ -142,7 +142,7 @@ def as_transforms(T, tolerance: float = ROTATION_TOLERANCE) -> np.ndarray:
     """
     try:
         T = np.asarray(T, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"a pose must be an array (4, 4) of numbers, not {T!r}") from None
     if T.shape[-2:] != (4, 4):
         raise InputError(f"a pose must have shape (4, 4) or (..., 4, 4); got {T.shape}")

@@ -28,7 +28,7 @@ def as_joints(q) -> np.ndarray:
     """
     try:
         joints = np.asarray(q, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(
             f"joint positions must be numbers in an array (..., 5), not {q!r}"
         ) from None

@@ -165,7 +165,7 @@ def _check_bounds(name, value, rule):
 def _checked_start(value) -> tuple[float, ...]:
     try:
         start = tuple(float(x) for x in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"parameter start must be five numbers, rad, not {value!r}") from None
     if len(start) != arm.DOF or not all(map(math.isfinite, start)):
         raise InputError(f"parameter start must be five finite numbers, rad, not {value!r}")

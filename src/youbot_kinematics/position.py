@@ -150,7 +150,7 @@ def _as_numbers(value, shape: tuple, name: str) -> np.ndarray:
     """``value`` as finite numbers of a shape."""
     try:
         array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = np.array([np.nan])
     if array.shape != shape or not np.isfinite(array).all():
         raise InputError(f"{name} must be finite and of shape {shape}, not {value!r}")
