@@ -14,13 +14,14 @@ static const double PI = 3.14159265358979323846;
 
 double turned(double angle, double lower, double upper, double *excess)
 {
+    *excess = 0;
+    if (lower <= angle && angle <= upper)
+        return angle;
     angle += 2 * PI * rint(((lower + upper) / 2 - angle) / (2 * PI));
     double on_limit = fmin(fmax(angle, lower), upper);
-    *excess = angle - on_limit;
-    if (fabs(*excess) <= LIMIT_ROUNDING) {
-        *excess = 0;
+    if (fabs(angle - on_limit) <= LIMIT_ROUNDING)
         return on_limit;
-    }
+    *excess = angle - on_limit;
     return angle;
 }
 
@@ -47,10 +48,11 @@ double two_links(double x, double y, double l1, double l2, double a[2], double b
     return fabs(beyond) <= EDGE ? 0 : beyond;
 }
 
-double bend(Point tool, double pitch, double joints[2][3])
+/* bend, for a pitch whose cosine and sine are known. */
+static inline double bend_at(Point tool, double pitch, double c, double s, double joints[2][3])
 {
     const double *offset = arm.offset, *a = arm.a, *d = arm.d;
-    double c = cos(pitch), s = sin(pitch), t2[2], elbow[2];
+    double t2[2], elbow[2];
     double wrist_r = tool.r + a[0] + a[3] * c + d[4] * s;
     double wrist_z = tool.z - d[0] - a[3] * s + d[4] * c;
     /* Angles count from the vertical, towards r: z is the two links' x axis, r their y axis. */
@@ -61,6 +63,11 @@ double bend(Point tool, double pitch, double joints[2][3])
         joints[i][2] = pitch - t2[i] - elbow[i] - offset[3];
     }
     return beyond;
+}
+
+double bend(Point tool, double pitch, double joints[2][3])
+{
+    return bend_at(tool, pitch, cos(pitch), sin(pitch), joints);
 }
 
 /* --- which plane: the azimuth --- */
@@ -110,7 +117,7 @@ double front_azimuth(const Pose T, const Limits *limits, double q1)
    that the arm can give the tool there, off by the tilt. */
 typedef struct {
     Point point;
-    double pitch, roll, tilt;
+    double pitch, cos_pitch, sin_pitch, roll, tilt;
 } PlanePose;
 
 /* The nearest rotation turns the tool's z axis into the plane on the shortest way. (It is the one
@@ -123,41 +130,59 @@ static PlanePose seen_from(const Pose T, double azimuth)
         along[i] = c * T[0][i] + s * T[1][i];
         across[i] = c * T[1][i] - s * T[0][i];
     }
-    double pitch = atan2(along[2], T[2][2]), cos_pitch = cos(pitch), sin_pitch = sin(pitch);
+    PlanePose pose = {.point = {c * T[0][3] + s * T[1][3], T[2][3]}};
+    pose.pitch = atan2(along[2], T[2][2]);
+    pose.cos_pitch = cos(pose.pitch);
+    pose.sin_pitch = sin(pose.pitch);
     /* A = Ry(-pitch) Rz(-azimuth) R turns about z by the roll, as nearly as it can:
        maximise trace(Rz(-roll) A). */
-    double a00 = cos_pitch * along[0] - sin_pitch * T[2][0];
-    double a01 = cos_pitch * along[1] - sin_pitch * T[2][1];
-    return (PlanePose){
-        .point = {c * T[0][3] + s * T[1][3], T[2][3]},
-        .pitch = pitch,
-        .roll = atan2(across[0] - a01, a00 + across[1]),
-        .tilt = asin(fmin(fabs(across[2]), 1)),
-    };
+    double a00 = pose.cos_pitch * along[0] - pose.sin_pitch * T[2][0];
+    double a01 = pose.cos_pitch * along[1] - pose.sin_pitch * T[2][1];
+    pose.roll = atan2(across[0] - a01, a00 + across[1]);
+    pose.tilt = asin(fmin(fabs(across[2]), 1));
+    return pose;
+}
+
+/* The same from the plane turned by half a turn: r and the pitch change their signs, for
+   Rz(pi) Ry(-pitch) Rz(pi) = Ry(pitch). */
+static PlanePose seen_from_the_back(PlanePose front)
+{
+    PlanePose back = front;
+    back.point.r = -front.point.r;
+    back.pitch = -front.pitch;
+    back.sin_pitch = -front.sin_pitch;
+    back.roll = front.roll + PI;
+    return back;
+}
+
+/* The two branches, elbow + and -, of an arm in the plane of an azimuth. */
+static void solve_in_plane(
+    const PlanePose *pose, double azimuth, const Limits *limits, Answer *answer, int first)
+{
+    double bent[2][3];
+    double beyond = bend_at(pose->point, pose->pitch, pose->cos_pitch, pose->sin_pitch, bent);
+    for (int elbow = 0; elbow < 2; elbow++) {
+        int i = first + elbow;
+        double *q = answer->joints[i], *excess = answer->limit_excess[i];
+        const Joints raw = {arm.offset[0] - azimuth, bent[elbow][0], bent[elbow][1],
+                            bent[elbow][2], -arm.offset[4] - pose->roll};
+        bool valid = beyond == 0 && pose->tilt <= POSE_TOLERANCE;
+        for (int j = 0; j < JOINTS; j++) {
+            q[j] = turned(raw[j], limits->lower[j], limits->upper[j], &excess[j]);
+            valid &= excess[j] == 0;
+        }
+        answer->valid[i] = valid;
+        answer->out_of_reach[i] = beyond;
+        answer->tilt[i] = pose->tilt;
+    }
 }
 
 void solve(const Pose T, const Limits *limits, double q1, Answer *answer)
 {
-    double front = front_azimuth(T, limits, q1);
-    for (int side = 0; side < 2; side++) { /* to the front, then over the back */
-        double azimuth = front + PI * side, bent[2][3];
-        PlanePose pose = seen_from(T, azimuth);
-        double beyond = bend(pose.point, pose.pitch, bent);
-        for (int elbow = 0; elbow < 2; elbow++) {
-            int i = 2 * side + elbow;
-            double *q = answer->joints[i], *excess = answer->limit_excess[i];
-            const Joints raw = {arm.offset[0] - azimuth, bent[elbow][0], bent[elbow][1],
-                                bent[elbow][2], -arm.offset[4] - pose.roll};
-            bool valid = beyond == 0 && pose.tilt <= POSE_TOLERANCE;
-            for (int j = 0; j < JOINTS; j++) {
-                q[j] = turned(raw[j], limits->lower[j], limits->upper[j], &excess[j]);
-                valid &= excess[j] == 0;
-            }
-            answer->valid[i] = valid;
-            answer->out_of_reach[i] = beyond;
-            answer->tilt[i] = pose.tilt;
-        }
-    }
+    double azimuth = front_azimuth(T, limits, q1);
+    PlanePose front = seen_from(T, azimuth), back = seen_from_the_back(front);
+    solve_in_plane(&front, azimuth, limits, answer, 0);
+    solve_in_plane(&back, azimuth + PI, limits, answer, 2);
 }
 
 /* --- is it a pose? --- */

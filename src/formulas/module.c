@@ -336,8 +336,10 @@ static PyObject *py_turned(PyObject *module, PyObject *const *args, Py_ssize_t n
         const double *low = PyArray_DATA(lower), *high = PyArray_DATA(upper);
         const double *in = PyArray_DATA(angles);
         double *out = result ? PyArray_DATA(result) : NULL, excess;
-        for (npy_intp i = 0; result && i < PyArray_SIZE(angles); i++)
-            out[i] = turned(in[i], low[i % m], high[i % m], &excess);
+        npy_intp n = result ? PyArray_SIZE(angles) / m : 0;
+        for (npy_intp i = 0; i < n; i++)
+            for (npy_intp j = 0; j < m; j++)
+                *out++ = turned(*in++, low[j], high[j], &excess);
     } else
         PyErr_SetString(PyExc_ValueError, "expected angles (..., m), lower (m,) and upper (m,)");
     Py_XDECREF(angles);
