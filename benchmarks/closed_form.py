@@ -10,19 +10,11 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
-from inverse import Eaik
+from peers import KIN, LIMITS, Eaik, random_joints
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from youbot_kinematics import YoubotKinematics, arm
-
-KIN = YoubotKinematics()
-LIMITS = KIN.limits
 CHUNK = 100_000
-
-
-def random_joints(rng, n):
-    return rng.uniform(LIMITS.lower, LIMITS.upper, (n, arm.DOF))
 
 
 def reachable(rng, n):

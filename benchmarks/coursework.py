@@ -74,16 +74,18 @@ def shortest_order(start, positions):
     return best
 
 
-def plan(start, positions, num_points):
+def plan(start, positions, num_points, order=None):
     """Joints at all points of the tour (m, 5), and whether each was found, (m,).
 
     Args:
         start: joints where the arm starts, (5,) rad.
         positions: of the targets, (n, 3), m.
         num_points: intermediate points between two checkpoints.
+        order: in which to visit them, (n,); the best of all permutations, if not given.
     """
     first = frames(start)[5][:3, 3]
-    order = shortest_order(first, positions)
+    if order is None:
+        order = shortest_order(first, positions)
     checkpoints = [first] + [positions[i] for i in order]
     q, joints, found = start, [start], [True]
     for a, b in zip(checkpoints[:-1], checkpoints[1:]):

@@ -6,39 +6,12 @@ the controller's quintic is SciPy's ``BPoly.from_derivatives``. The limits are t
 
 from __future__ import annotations
 
-from xml.etree import ElementTree
-
 import numpy as np
 import PyKDL
 from scipy.interpolate import BPoly
+from urdf_chain import kdl_chain
 
 RATE = 1000  # Hz
-
-
-def chain_from_urdf(path, base="base_link", tool="arm_link_ee"):
-    """PyKDL's chain from base to tool."""
-    joints = {j.find("child").get("link"): j for j in ElementTree.parse(path).iter("joint")}
-    links = []
-    while tool != base:
-        links.append((tool, joints[tool]))
-        tool = joints[tool].find("parent").get("link")
-    chain = PyKDL.Chain()
-    for name, joint in reversed(links):
-        origin = joint.find("origin")
-        xyz, rpy = (_floats(origin, key) for key in ("xyz", "rpy"))
-        frame = PyKDL.Frame(PyKDL.Rotation.RPY(*rpy), PyKDL.Vector(*xyz))
-        if joint.get("type") == "fixed":
-            moving = PyKDL.Joint(name, PyKDL.Joint.Fixed)
-        else:
-            axis = frame.M * PyKDL.Vector(*_floats(joint.find("axis"), "xyz"))
-            moving = PyKDL.Joint(name, frame.p, axis, PyKDL.Joint.RotAxis)
-        chain.addSegment(PyKDL.Segment(name, moving, frame))
-    return chain
-
-
-def _floats(element, key):
-    text = "0 0 0" if element is None else element.get(key, "0 0 0")
-    return [float(x) for x in text.split()]
 
 
 class Judge:
@@ -50,7 +23,7 @@ class Judge:
     """
 
     def __init__(self, urdf, limits):
-        self.chain, self.limits = chain_from_urdf(urdf), limits
+        self.chain, self.limits = kdl_chain(urdf), limits
         self.solver = PyKDL.ChainFkSolverPos_recursive(self.chain)
 
     def tool(self, q):

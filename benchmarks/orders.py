@@ -1,5 +1,6 @@
 """The visiting order beside its peers: time, and length against the best that any of them found.
 
+The best peer is the fastest of those whose paths are as short as the project's.
 An open path from the start through all targets, as random points in the arm's reach. Each peer gets
 its own closed or integer form of the problem; the lengths are all computed here.
 """
@@ -8,14 +9,18 @@ from __future__ import annotations
 
 import argparse
 from importlib import import_module
+from statistics import median
 
 import coursework
 import numpy as np
-from bench import duration, seconds, table, write
+from bench import OURS, Work, compared, in_turn, report, shown, table
 
 from youbot_kinematics.tour import path_length, shortest_path
 
 SIZES = (4, 10, 15, 20, 200)
+EXACT = 15  # targets up to which the shortest path must be found
+MANY = 100
+SAME = 1e-9  # of the lengths
 _LARGEST = 1_000_000  # of the integers for those who take them
 
 
@@ -76,8 +81,8 @@ def python_tsp(points):
 
 #: Name -> how to solve it, and up to how many targets that is worth waiting for.
 SOLVERS = {
-    "youbot_kinematics": (ours, 1000),
-    "permutations": (permutations, 8),
+    OURS: (ours, 1000),
+    "permutations": (permutations, 7),
     "held-karp": (held_karp, 15),
     "fast-tsp": (fast_tsp, 1000),
     "elkai": (elkai, 1000),
@@ -108,44 +113,70 @@ def opened(tour, n):
     return np.array([node - 1 for node in tour[1:] if node != n])
 
 
-def measure(points, repeats):
-    """Name -> time (s) and length (m) of each solver that can be had."""
-    results = {}
+def solvers_for(n):
+    """Name -> those that are worth waiting for with n targets, and are installed."""
+    found, trial = {}, np.eye(5, 3)
     for name, (solve, most) in SOLVERS.items():
-        if len(points) - 1 > most:
-            continue
         try:
-            solve(points)  # the first call imports
-            took, order = seconds(lambda solve=solve: solve(points), repeats)
+            solve(trial)
         except ImportError as error:
             print(f"{name}: left out, not installed ({error})")
             continue
-        assert sorted(order) == list(range(len(points) - 1)), name
-        results[name] = (took, path_length(points[np.append(0, order + 1)]))
-    return results
+        if n <= most:
+            found[name] = solve
+    return found
+
+
+def lengths_of(solvers, tours):
+    """Name -> length of each tour's path as a solver orders it, (k,) m."""
+    lengths = {}
+    for name, solve in solvers.items():
+        orders = [np.asarray(solve(points), dtype=int) for points in tours]
+        for order, points in zip(orders, tours):
+            assert sorted(order) == list(range(len(points) - 1)), name
+        paths = [points[np.append(0, order + 1)] for order, points in zip(orders, tours)]
+        lengths[name] = np.array([path_length(path) for path in paths])
+    return lengths
+
+
+def measure(n, rng, count):
+    """The line of tours with n targets."""
+    tours = [rng.uniform(-0.5, 0.5, (n + 1, 3)) for _ in range(count if n < MANY else 2)]
+    solvers = solvers_for(n)
+    lengths = lengths_of(solvers, tours)
+    best = np.min(list(lengths.values()), axis=0)
+    above = {name: float((length / best - 1).max()) for name, length in lengths.items()}
+    as_short = [name for name in above if name != OURS and above[name] <= above[OURS] + SAME]
+    works = {
+        name: Work(
+            lambda all_of, solve=solve: [solve(one) for one in all_of], [tours] * 50, len(tours)
+        )
+        for name, solve in solvers.items()
+    }
+    times = in_turn(works, rounds=5) if n < MANY else in_turn(works, rounds=3, round_time=0)
+    exact = n <= EXACT
+    goal = "exact, and 2 times the time" if exact else "2 times the time"
+    found = above[OURS] <= SAME or not exact
+    line = compared(f"tour, {n} checkpoints", times, 2.0, goal, found, rivals=as_short)
+    line.more = {"above_shortest": above}
+    rows = [
+        (name, shown(median(values)), f"{line.ours / median(values):.2f}", f"{above[name]:.3%}")
+        for name, values in times.items()
+    ]
+    table((f"{n} targets", "each", "ours by it", "above shortest"), rows)
+    print()
+    return line
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--tours", type=int, default=5, help="of each size")
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
-    everything = {}
-    for n in options.sizes:
-        results = measure(rng.uniform(-0.5, 0.5, (n + 1, 3)), options.repeats)
-        best = min(length for _, length in results.values())
-        our_time, _ = results["youbot_kinematics"]
-        rows = [
-            (name, duration(took), f"{took / our_time:.2f}", f"{length:.4f} m", f"{above:.3%}")
-            for name, (took, length) in results.items()
-            for above in [length / best - 1]
-        ]
-        table((f"{n} targets", "time", "by ours", "length", "above best"), rows)
-        print()
-        everything[n] = {name: dict(zip(("time", "length"), row)) for name, row in results.items()}
-    write("orders", {"seed": options.seed, "sizes": everything})
+    lines = [measure(n, rng, options.tours) for n in options.sizes]
+    report("orders", lines, **vars(options))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from collections import Counter
 
 import coursework
 import numpy as np
-from bench import duration, table, write
+from bench import shown, table, write
 from judge import Judge
 
 from youbot_kinematics import PlanningError, YoubotKinematics, arm
@@ -102,7 +102,7 @@ def show(planned, count, verdicts):
     for name in ("reconfigurations", "detours", "solver"):
         print(f"{name}: {histogram(f[name] for f in planned)} tours")
     print(f"lines left by detours: {sum(f['detoured'] for f in planned):.3f} m in all")
-    print(f"planning: {duration(np.median(times))} median, {duration(max(times))} at most")
+    print(f"planning: {shown(np.median(times))} median, {shown(max(times))} at most")
     return {"worst": worst, "over": over, "usable_by_coursework": usable}
 
 
