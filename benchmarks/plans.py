@@ -29,6 +29,9 @@ COURSE_BAG = os.environ.get("YOUBOT_COURSE_BAG") or ROOT.parent / "shared/bags/c
 STARTS = {"the folded arm": np.zeros(arm.DOF), "mid-range": (LIMITS.lower + LIMITS.upper) / 2}
 TIMINGS = "optimal", "cubic"
 SIZES = 8, 64, 512
+#: Intermediate points a segment, for both: with as many the coursework's steps are those of the
+#: trajectory that a controller wants.
+PLANNED = Parameters(num_points=50)
 PERMUTED = 8  # targets up to which the coursework's permutations are waited for
 #: Sizes of tours in the given order, whose lengths grow as their numbers of targets do (a shortest
 #: path grows more slowly). There are as many targets of each size: of small tours, several.
@@ -40,7 +43,7 @@ def joints_of_coursework(targets, start, order):
     """The coursework's joints and what was found, with permutations or in a given order."""
     positions = targets.poses[:, :3, 3]
     with np.errstate(all="ignore"):
-        return coursework.plan(start, positions, Parameters().num_points, order)
+        return coursework.plan(start, positions, PLANNED.num_points, order)
 
 
 def what_is_wrong(verdict):
@@ -51,11 +54,11 @@ def what_is_wrong(verdict):
 
 def measure(name, targets, start, rounds):
     """The line of a whole plan; in its ``more``, how long it is."""
-    planned = plan(targets, start)
+    planned = plan(targets, start, PLANNED)
     order = None if len(targets) <= PERMUTED else planned.order
     verdict = coursework.judge(*joints_of_coursework(targets, start, order), LIMITS)
     works = {
-        OURS: Work(lambda _: plan(targets, start), [None]),
+        OURS: Work(lambda _: plan(targets, start, PLANNED), [None]),
         "coursework": Work(lambda _: joints_of_coursework(targets, start, order), [None]),
     }
     line = compared(f"plan, {name}", in_turn(works, rounds, 0.0), 1.0, "faster")

@@ -14,7 +14,8 @@ ROS_FREE = """
     exceptions resources files colours progress progress_bar
     arm formulas posture singularity intervals selection planar inverse position nearest kinematics
     kdl shapes
-    bag_records rosbag1 rosbag2 bag_reader target_forms targets tour path trajectory track differential
+    bag_records rosbag1 rosbag2 bag_reader target_forms targets
+    tour path trajectory track differential
     resolve.lines resolve.smoothing resolve.search resolve.route resolve.graph resolve.itinerary
     resolve.pitch resolve.roll resolve resolve.explain
     coursework optimal timing contract controller check parameters interface solvers planner summary

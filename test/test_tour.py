@@ -7,7 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from youbot_kinematics.tour import EXACT_UP_TO, local_search, path_length, shortest_path
+from youbot_kinematics.tour import (
+    EXACT_UP_TO,
+    held_karp,
+    local_search,
+    path_length,
+    shortest_path,
+)
 
 
 def random_points(n, seed):
@@ -35,6 +41,54 @@ def test_the_order_is_as_short_as_the_best_of_all_permutations(n, home):
         assert sorted(order) == list(range(n))
         assert length == pytest.approx(shortest_of_all(start, positions, home), abs=1e-12)
         assert length == pytest.approx(path_length(way(start, positions, order, home)))
+
+
+def shortest_by_sets(distances, home):
+    """The length of the shortest path by Held and Karp's recursion, as the textbooks have it."""
+    n = len(distances) - 1
+    best = {(1 << j, j): distances[0, j + 1] for j in range(n)}
+    for visited in range(1, 2**n):
+        for j in (j for j in range(n) if visited >> j & 1 and visited != 1 << j):
+            before = visited ^ 1 << j
+            best[visited, j] = min(
+                best[before, i] + distances[i + 1, j + 1] for i in range(n) if before >> i & 1
+            )
+    back = distances[1:, 0] if home else np.zeros(n)
+    return min(best[2**n - 1, j] + back[j] for j in range(n))
+
+
+@pytest.mark.parametrize("home", [False, True])
+@pytest.mark.parametrize(
+    "place",
+    [
+        lambda rng, n: rng.uniform(-0.5, 0.5, (n, 3)),
+        lambda rng, n: rng.integers(0, 3, (n, 3)) * 0.1,  # many ways are of one length
+        lambda rng, n: np.repeat(rng.uniform(-0.5, 0.5, (n // 3, 3)), 3, axis=0),
+        lambda rng, n: rng.integers(0, 2, (n, 1)) + rng.normal(0, 0.01, (n, 3)),  # two heaps
+        lambda rng, n: np.outer(rng.permutation(n), [1, 0, 0]),  # on a line
+        lambda rng, n: np.zeros((n, 3)),
+    ],
+)
+def test_the_order_is_exact_wherever_the_targets_are(place, home):
+    points = place(np.random.default_rng(5), 12)
+    distances = np.linalg.norm(points[:, None] - points, axis=-1)
+    order, length = shortest_path(points[0], points[1:], home)
+    assert sorted(order) == list(range(11))
+    assert length == pytest.approx(shortest_by_sets(distances, home), abs=1e-12)
+
+
+def test_the_exact_order_is_never_longer_than_the_local_search_s():
+    for seed in range(10):
+        start, positions = random_points(EXACT_UP_TO, seed)
+        points = np.vstack([start, positions])
+        order = local_search(np.linalg.norm(points[:, None] - points, axis=-1))
+        length = path_length(points[np.append(0, order + 1)])
+        assert shortest_path(start, positions)[1] <= length + 1e-12
+
+
+def test_too_many_targets_for_an_exact_order_are_refused():
+    with pytest.raises(ValueError, match="at most 21 nodes"):
+        held_karp(np.zeros((EXACT_UP_TO + 2, EXACT_UP_TO + 2)))
 
 
 def test_the_way_home_counts():

@@ -1,4 +1,4 @@
-/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose.
+/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; and tour.c.
 
    Plain C, one configuration at a time; module.c offers them to Python, for one and for many.
 
@@ -86,5 +86,14 @@ typedef struct {
 } Flaws;
 Flaws flaws(const Pose T);
 bool is_rigid(const Pose T);
+
+/* --- tour.c --- */
+
+/* Points up to which the shortest order is found exactly; what it takes doubles with each. */
+enum { MOST_EXACT = 20 };
+/* The shortest path from node 0 through n others, and back if return_home: the order of the points,
+   which are the other nodes less one. distances: (n + 1) x (n + 1), symmetric, m. False if there is
+   not enough memory. */
+bool held_karp(int n, const double *distances, bool return_home, int *order);
 
 #endif

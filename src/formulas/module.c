@@ -348,6 +348,33 @@ static PyObject *py_turned(PyObject *module, PyObject *const *args, Py_ssize_t n
     return (PyObject *)result;
 }
 
+/* --- the visiting order --- */
+
+static PyObject *py_held_karp(PyObject *module, PyObject *const *args, Py_ssize_t n_args)
+{
+    PyArrayObject *distances = n_args == 2 ? as_array(args[0], 0, NULL) : NULL;
+    npy_intp n = distances && PyArray_NDIM(distances) == 2 ? PyArray_DIM(distances, 0) - 1 : -1;
+    int return_home = n_args == 2 ? PyObject_IsTrue(args[1]) : -1;
+    PyObject *result = NULL;
+    int order[MOST_EXACT];
+    bool has_memory = true;
+    if (n < 0 || n > MOST_EXACT || PyArray_DIM(distances, 1) != n + 1 || return_home < 0)
+        PyErr_Format(PyExc_ValueError, "expected distances of at most %d nodes", MOST_EXACT + 1);
+    else {
+        Py_BEGIN_ALLOW_THREADS
+        has_memory = held_karp((int)n, PyArray_DATA(distances), return_home, order);
+        Py_END_ALLOW_THREADS
+        if (has_memory)
+            result = PyArray_SimpleNew(1, &n, NPY_INTP);
+        else
+            PyErr_NoMemory();
+    }
+    for (npy_intp i = 0; result && i < n; i++)
+        ((npy_intp *)PyArray_DATA((PyArrayObject *)result))[i] = order[i];
+    Py_XDECREF(distances);
+    return result;
+}
+
 /* --- the module --- */
 
 static PyMethodDef FUNCTIONS[] = {
@@ -368,6 +395,8 @@ static PyMethodDef FUNCTIONS[] = {
      "two_links(rows of x, y, l1, l2): a (..., 2), b (..., 2), out of reach (...)"},
     {"turned", (PyCFunction)(void (*)(void))py_turned, METH_FASTCALL,
      "turned(angles, lower, upper): next to their ranges by whole turns"},
+    {"held_karp", (PyCFunction)(void (*)(void))py_held_karp, METH_FASTCALL,
+     "held_karp(distances, return_home): the shortest order (n,)"},
     {NULL, NULL, 0, NULL},
 };
 
@@ -408,7 +437,7 @@ static bool add_constants(PyObject *module)
     for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
         if (PyModule_AddObject(module, constants[i].name, PyFloat_FromDouble(constants[i].value)))
             return false;
-    return true;
+    return !PyModule_AddIntConstant(module, "MOST_EXACT", MOST_EXACT);
 }
 
 PyMODINIT_FUNC PyInit_formulas(void)
