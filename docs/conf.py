@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 from latex2mathml.converter import convert
 
-from youbot_kinematics.interface import channel_table, parameter_table
+from youbot_kinematics import interface
 
 ROOT = Path(__file__).resolve().parents[1]
 manifest = ElementTree.parse(ROOT / "package.xml")
@@ -24,7 +24,13 @@ html_css_files = ["wide.css"]
 myst_enable_extensions = ["dollarmath", "substitution"]
 myst_heading_anchors = 3
 # The tables come from what the node reads.
-myst_substitutions = {"parameters": parameter_table(), "channels": channel_table()}
+myst_substitutions = {
+    "parameters": interface.parameter_table(),
+    "simulator_parameters": interface.parameter_table(interface.SimulatorParameters),
+    "trail_parameters": interface.parameter_table(interface.TrailParameters),
+    "slider_parameters": interface.parameter_table(interface.SliderParameters),
+    "channels": interface.channel_table(),
+}
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

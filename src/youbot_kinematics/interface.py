@@ -1,4 +1,4 @@
-"""The planner node's ROS interface as data: parameters, topics and services, defined once.
+"""The nodes' ROS interface as data: parameters, topics and services, defined once.
 
 The nodes take their names from here, and so do the tables in the documents::
 
@@ -10,8 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
+from . import arm
 from .exceptions import InputError
-from .parameters import Parameters, parameter
+from .parameters import Checked, Parameters, parameter
+
+_FOLDED = (0.0,) * arm.DOF
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,37 @@ class NodeParameters(Parameters):
         super().__post_init__()
         if not self.bag:
             raise InputError("parameter bag is required: the file with the targets (_bag:=FILE)")
+
+
+@dataclass(frozen=True)
+class SimulatorParameters(Checked):
+    """What the simulator can be told."""
+
+    start: tuple[float, ...] = parameter(_FOLDED, "where the arm stands at first, rad")
+    limits: str = parameter("urdf", "profile of joint limits", choices=tuple(arm.LIMITS))
+    rate: float = parameter(100.0, "joint states a second, Hz", at_least=1.0, at_most=1000.0)
+
+
+@dataclass(frozen=True)
+class TrailParameters(Checked):
+    """What the trail can be told."""
+
+    spacing: float = parameter(
+        0.02, "how far the tool goes from one point of the trail to the next, m", at_least=0.001
+    )
+    points: int = parameter(
+        3000, "length of the trail; its oldest points go first", at_least=2, at_most=100_000
+    )
+    rate: float = parameter(5.0, "how often a trail that grows is published, Hz", at_least=0.1)
+
+
+@dataclass(frozen=True)
+class SliderParameters(Checked):
+    """What the sliders can be told."""
+
+    start: tuple[float, ...] = parameter(_FOLDED, "where the sliders stand at first, rad")
+    limits: str = parameter("urdf", "profile of joint limits", choices=tuple(arm.LIMITS))
+    rate: float = parameter(30.0, "joint states a second, Hz", at_least=1.0, at_most=100.0)
 
 
 class Channel(NamedTuple):
@@ -109,6 +143,8 @@ def _values(f) -> str:
         return "`true`, `false`"
     if rule["at_least"] is None:
         return "text" if f.default == "" else "list"
+    if rule["at_most"] is None:
+        return f"at least {rule['at_least']:g}"
     return f"{rule['at_least']:g} to {rule['at_most']:g}"
 
 

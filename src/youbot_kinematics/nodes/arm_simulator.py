@@ -12,7 +12,6 @@ jump: it goes on from where it is.
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 import rospy
@@ -22,19 +21,10 @@ from trajectory_msgs.msg import JointTrajectory
 from .. import arm
 from ..controller import Controller
 from ..exceptions import InputError
+from ..interface import SimulatorParameters
 from ..messages import command_from_message
-from ..parameters import Checked, parameter
 from ..state_messages import joint_state_message
 from .common import COMMAND_TOPIC, JOINT_STATES_TOPIC, read_parameters, run_node
-
-
-@dataclass(frozen=True)
-class SimulatorParameters(Checked):
-    """What the simulator can be told."""
-
-    start: tuple[float, ...] = parameter((0.0,) * arm.DOF, "where the arm stands at first, rad")
-    limits: str = parameter("urdf", "profile of joint limits", choices=tuple(arm.LIMITS))
-    rate: float = parameter(100.0, "joint states a second, Hz", at_least=1.0, at_most=1000.0)
 
 
 class ArmSimulator:

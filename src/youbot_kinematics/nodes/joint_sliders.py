@@ -6,30 +6,19 @@ fractions where that wants whole numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import rospy
 from sensor_msgs.msg import JointState
 
 from .. import arm
 from ..exceptions import InputError
-from ..parameters import Checked, parameter
+from ..interface import SliderParameters
 from ..state_messages import joint_state_message
 from .common import JOINT_STATES_TOPIC, read_parameters, run_node
 
 RESOLUTION = 0.001  # rad
 LENGTH = 420  # pixels
-STANDING = (0.0,) * arm.DOF
-
-
-@dataclass(frozen=True)
-class SliderParameters(Checked):
-    """What the sliders can be told."""
-
-    start: tuple[float, ...] = parameter(STANDING, "where the sliders stand at first, rad")
-    limits: str = parameter("urdf", "profile of joint limits", choices=tuple(arm.LIMITS))
-    rate: float = parameter(30.0, "joint states a second, Hz", at_least=1.0, at_most=100.0)
+STANDING = (0.0,) * arm.DOF  # rad/s
 
 
 class JointSliders:

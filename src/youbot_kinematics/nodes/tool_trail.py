@@ -7,7 +7,6 @@ begins a new trail.
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 import rospy
@@ -15,25 +14,11 @@ from nav_msgs.msg import Path
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import Marker
 
-from ..interface import TRAIL
+from ..interface import TRAIL, TrailParameters
 from ..kinematics import YoubotKinematics
 from ..messages import trail_marker
-from ..parameters import Checked, parameter
 from ..state_messages import joints_from_message
 from .common import JOINT_STATES_TOPIC, PATH_TOPIC, read_parameters, run_node
-
-
-@dataclass(frozen=True)
-class TrailParameters(Checked):
-    """What the trail can be told."""
-
-    spacing: float = parameter(
-        0.02, "how far the tool goes from one point of the trail to the next, m", at_least=0.001
-    )
-    points: int = parameter(
-        3000, "length of the trail; its oldest points go first", at_least=2, at_most=100_000
-    )
-    rate: float = parameter(5.0, "how often a trail that grows is published, Hz", at_least=0.1)
 
 
 class ToolTrail:
