@@ -1,4 +1,5 @@
-/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose.
+/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; and search.c, the
+   steps of the search for joint paths.
 
    Plain C, one configuration at a time; module.c offers them to Python, for one and for many.
 
@@ -18,6 +19,7 @@
 #define YOUBOT_FORMULAS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { JOINTS = 5, FRAMES = JOINTS + 1, BRANCHES = 4 };
 
@@ -86,5 +88,23 @@ typedef struct {
 } Flaws;
 Flaws flaws(const Pose T);
 bool is_rigid(const Pose T);
+
+/* --- search.c --- */
+
+/* Where the arm may stand at a waypoint: joints 1 to 4 over their velocities, in s, NaN if it
+   cannot. A waypoint has BRANCHES x n_pitches cells, numbered branch * n_pitches + pitch. */
+enum { CELL_JOINTS = 4 };
+typedef float Cell[CELL_JOINTS];
+
+/* The least cost (s) of each cell of a waypoint, given those of the cells before, and the cell that
+   it comes from: by steps on one branch, to no more than `reach` pitches on round the circle, in
+   which no joint moves for longer than the tear (s). INFINITY where there is none. */
+void smooth_step(const Cell *before, const Cell *after, const double *cost, int n_pitches,
+                 int reach, float tear, double *total, int16_t *origin);
+/* The same by moves from rest to rest, which cost their time and something extra (s), from any of
+   the sources to any of the targets; the rate is acceleration over velocity, 1/s. */
+void move(const Cell *before, const Cell *after, const double *cost, const bool *sources,
+          const bool *targets, int n_cells, double rate, double extra, double *total,
+          int16_t *origin);
 
 #endif

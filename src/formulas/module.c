@@ -348,6 +348,68 @@ static PyObject *py_turned(PyObject *module, PyObject *const *args, Py_ssize_t n
     return (PyObject *)result;
 }
 
+/* --- the search, whose arrays search.py always makes as they must be: else it is a TypeError --- */
+
+/* Whether an array has values of a type, so many for each cell, one after the other. */
+static bool has_cells(PyArrayObject *array, int type, npy_intp n_cells, int per_cell)
+{
+    return PyArray_TYPE(array) == type && PyArray_ISCARRAY_RO(array)
+        && PyArray_SIZE(array) == n_cells * per_cell;
+}
+
+/* New arrays for the costs of cells and for where they come from. */
+static PyObject *new_step(npy_intp n_cells, double **total, int16_t **origin)
+{
+    PyArrayObject *costs = (PyArrayObject *)PyArray_SimpleNew(1, &n_cells, NPY_DOUBLE);
+    PyArrayObject *cells = (PyArrayObject *)PyArray_SimpleNew(1, &n_cells, NPY_INT16);
+    *total = costs ? PyArray_DATA(costs) : NULL;
+    *origin = cells ? PyArray_DATA(cells) : NULL;
+    return Py_BuildValue("NN", costs, cells);
+}
+
+static PyObject *py_smooth_step(PyObject *module, PyObject *args)
+{
+    PyArrayObject *before, *after, *cost;
+    int reach;
+    float tear;
+    if (!PyArg_ParseTuple(args, "O!O!O!if", &PyArray_Type, &before, &PyArray_Type, &after,
+                          &PyArray_Type, &cost, &reach, &tear))
+        return NULL;
+    npy_intp n = PyArray_SIZE(cost);
+    if (!has_cells(before, NPY_FLOAT, n, CELL_JOINTS) || !has_cells(after, NPY_FLOAT, n, CELL_JOINTS)
+        || !has_cells(cost, NPY_DOUBLE, n, 1) || n % BRANCHES || n / BRANCHES < reach)
+        return PyErr_Format(PyExc_TypeError, "these are not cells of a search");
+    double *total;
+    int16_t *origin;
+    PyObject *step = new_step(n, &total, &origin);
+    if (step)
+        smooth_step(PyArray_DATA(before), PyArray_DATA(after), PyArray_DATA(cost),
+                    (int)n / BRANCHES, reach, tear, total, origin);
+    return step;
+}
+
+static PyObject *py_move(PyObject *module, PyObject *args)
+{
+    PyArrayObject *before, *after, *cost, *sources, *targets;
+    double rate, extra;
+    if (!PyArg_ParseTuple(args, "O!O!O!O!O!dd", &PyArray_Type, &before, &PyArray_Type, &after,
+                          &PyArray_Type, &cost, &PyArray_Type, &sources, &PyArray_Type, &targets,
+                          &rate, &extra))
+        return NULL;
+    npy_intp n = PyArray_SIZE(cost);
+    if (!has_cells(before, NPY_FLOAT, n, CELL_JOINTS) || !has_cells(after, NPY_FLOAT, n, CELL_JOINTS)
+        || !has_cells(cost, NPY_DOUBLE, n, 1) || !has_cells(sources, NPY_BOOL, n, 1)
+        || !has_cells(targets, NPY_BOOL, n, 1))
+        return PyErr_Format(PyExc_TypeError, "these are not cells of a search");
+    double *total;
+    int16_t *origin;
+    PyObject *step = new_step(n, &total, &origin);
+    if (step)
+        move(PyArray_DATA(before), PyArray_DATA(after), PyArray_DATA(cost), PyArray_DATA(sources),
+             PyArray_DATA(targets), (int)n, rate, extra, total, origin);
+    return step;
+}
+
 /* --- the module --- */
 
 static PyMethodDef FUNCTIONS[] = {
@@ -368,6 +430,10 @@ static PyMethodDef FUNCTIONS[] = {
      "two_links(rows of x, y, l1, l2): a (..., 2), b (..., 2), out of reach (...)"},
     {"turned", (PyCFunction)(void (*)(void))py_turned, METH_FASTCALL,
      "turned(angles, lower, upper): next to their ranges by whole turns"},
+    {"smooth_step", py_smooth_step, METH_VARARGS,
+     "smooth_step(before, after, cost, reach, tear): costs (n_cells,), where from (n_cells,)"},
+    {"move", py_move, METH_VARARGS,
+     "move(before, after, cost, sources, targets, rate, extra): the same"},
     {NULL, NULL, 0, NULL},
 };
 

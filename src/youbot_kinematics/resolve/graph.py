@@ -14,12 +14,11 @@ from .. import arm
 from ..exceptions import PlanningError
 from .lines import Line
 from .route import SAME_PLANE, Route, branch_of, cell_of, pitch_of, route_along, standings
-from .search import DETOUR, SAME, SMOOTH, SWAPPED, TURNED, Graph, smooth_costs
+from .search import DETOUR, SAME, SMOOTH, SWAPPED, TURNED, Graph, smooth_step
 
 _N_CELLS = 128
 # At the ends of a detour: steps are cut in so many, so often, and the pitch is tried as often.
 _CUTS, _CUT_ROUNDS, _FINER = 8, 2, 9
-_CHUNK = 256
 
 
 class Tour(NamedTuple):
@@ -61,27 +60,27 @@ def _build(lines, fractions, fine, exact, limits, rate) -> Tour:
     fine = np.concatenate(fine)
     joints, pitch = standings(route, limits, _N_CELLS)
     if fine.any():
-        joints[:, fine], pitch[fine] = standings(route.take(fine), limits, _N_CELLS, _FINER)
+        joints[fine], pitch[fine] = standings(route.take(fine), limits, _N_CELLS, _FINER)
     demanded: dict = {}
     confined: dict = {}
-    apart = []
+    apart: dict = {}
     for k in np.flatnonzero((route.u == 0) | (route.u == 1)):
         number = int(route.line[k] + route.u[k])
         if exact[number] is None:
-            _must_reach(joints[0, k], number, lines[route.line[k]].point(route.u[k]))
+            _must_reach(joints[k], number, lines[route.line[k]].point(route.u[k]))
             continue
         for q in exact[number]:
             branch, in_plane = branch_of(route, k, q)
             cell = branch * _N_CELLS + int(cell_of(pitch_of(q), _N_CELLS))
             demanded[int(k), cell] = q
-            joints[:, k].reshape(4, -1)[:, cell] = q[:4]
+            joints[k].reshape(-1, 4)[cell] = q[:4]
             pitch[k].reshape(-1)[cell] = pitch_of(q)
             confined.setdefault(int(k), []).append(cell)
             if not in_plane:
-                apart.append((int(k), cell))
+                apart.setdefault(int(k), []).append(cell)
     graph = Graph(
-        joints=joints / limits.velocity[:4, None, None, None].astype(np.float32),
-        valid=np.isfinite(joints[0]),
+        joints=joints / limits.velocity[:4].astype(np.float32),
+        valid=np.isfinite(joints[..., 0]),
         links=_links(route),
         start=confined.pop(0)[0],
         confined=confined,
@@ -116,12 +115,11 @@ def _links(route: Route) -> np.ndarray:
 
 def _blocked(graph: Graph) -> np.ndarray:
     """Steps (K - 1,) along a line that the arm cannot make from any cell to any other."""
-    free = np.empty(len(graph.links), dtype=bool)
-    for first in range(0, len(free), _CHUNK):
-        joints = graph.joints[:, first : first + _CHUNK + 1]
-        steps = smooth_costs(joints[:, :-1], joints[:, 1:])
-        free[first : first + _CHUNK] = np.isfinite(steps).any(axis=(1, 2, 3))
-    return ~free & (graph.links == SMOOTH)
+    cost = np.zeros(graph.valid[0].size)
+    smooth = np.flatnonzero(graph.links == SMOOTH)
+    blocked = np.zeros(len(graph.links), dtype=bool)
+    blocked[smooth] = [np.isinf(smooth_step(graph, k + 1, cost)[0]).all() for k in smooth]
+    return blocked
 
 
 def _cut(tour: Tour, blocked):
@@ -155,11 +153,11 @@ def _with_detours(tour: Tour) -> Tour:
     index = np.flatnonzero(keep)
     moved = np.cumsum(keep) - 1
     graph = tour.graph._replace(
-        joints=tour.graph.joints[:, keep],
+        joints=tour.graph.joints[keep],
         valid=tour.graph.valid[keep],
         links=np.where(blocked[index[1:] - 1], DETOUR, tour.graph.links[index[1:] - 1]),
         confined={int(moved[k]): cells for k, cells in tour.graph.confined.items()},
-        apart=[(int(moved[k]), cell) for k, cell in tour.graph.apart],
+        apart={int(moved[k]): cells for k, cells in tour.graph.apart.items()},
         checkpoint=tour.graph.checkpoint[keep],
     )
     demanded = {(int(moved[k]), cell): q for (k, cell), q in tour.demanded.items()}

@@ -95,15 +95,15 @@ def standings(route: Route, limits: arm.JointLimits, n_cells: int, finer: int = 
         finer: how many pitches are tried in a cell, odd. The valid one next to its middle is taken.
 
     Returns:
-        ``(joints, pitch)``: joints 1 to 4, (4, K, 4, n_cells) rad, NaN where the arm cannot stand,
+        ``(joints, pitch)``: joints 1 to 4, (K, 4, n_cells, 4) rad, NaN where the arm cannot stand,
         and the pitch there (K, 4, n_cells), rad. The branch is 2 * track + elbow.
     """
     K = len(route.u)
-    joints = np.empty((4, K, 4, n_cells), dtype=np.float32)
+    joints = np.empty((K, 4, n_cells, 4), dtype=np.float32)
     pitch = np.empty((K, 4, n_cells), dtype=np.float32)
     for first in range(0, K, _CHUNK):
         rows = slice(first, first + _CHUNK)
-        joints[:, rows], pitch[rows] = _standings(route.take(rows), limits, n_cells, finer)
+        joints[rows], pitch[rows] = _standings(route.take(rows), limits, n_cells, finer)
     return joints, pitch
 
 
@@ -117,7 +117,8 @@ def _standings(route: Route, limits, n_cells, finer):
     rank = np.where(np.isnan(joints[0]), finer, off_middle)
     best = rank.argmin(axis=-1)[..., None]
     pitch = np.take_along_axis(tried[:, :1].reshape(K, 1, n_cells, finer), best, axis=-1)
-    return np.take_along_axis(joints, best[None], axis=-1)[..., 0], pitch[..., 0]
+    joints = np.take_along_axis(joints, best[None], axis=-1)[..., 0]
+    return np.moveaxis(joints, 0, -1), pitch[..., 0]
 
 
 def branch_of(route: Route, k: int, q: np.ndarray):
