@@ -51,6 +51,8 @@ void tool_pose(const Joints q, Pose T);
 void dh_frames(const Joints q, Pose T[FRAMES]);
 /* The geometric Jacobian of the tool: linear (m/rad) over angular velocity (rad/rad). */
 void jacobian(const Joints q, double J[6][JOINTS]);
+/* The smallest singular value of that, from its two blocks: see singularity.py. */
+double smallest_singular_value(const Joints q);
 
 /* --- inverse.c --- */
 

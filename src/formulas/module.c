@@ -103,6 +103,11 @@ static void jacobian_at(const double *q, double *J)
     jacobian(q, (double(*)[JOINTS])J);
 }
 
+static void smallest_singular_value_at(const double *q, double *value)
+{
+    *value = smallest_singular_value(q);
+}
+
 static PyObject *py_tool_pose(PyObject *module, PyObject *q)
 {
     return of_joints(q, tool_pose_at, 2, POSE_SHAPE);
@@ -116,6 +121,11 @@ static PyObject *py_dh_frames(PyObject *module, PyObject *q)
 static PyObject *py_jacobian(PyObject *module, PyObject *q)
 {
     return of_joints(q, jacobian_at, 2, (npy_intp[]){6, JOINTS});
+}
+
+static PyObject *py_smallest_singular_value(PyObject *module, PyObject *q)
+{
+    return of_joints(q, smallest_singular_value_at, 0, NULL);
 }
 
 /* --- inverse --- */
@@ -416,6 +426,8 @@ static PyMethodDef FUNCTIONS[] = {
     {"tool_pose", py_tool_pose, METH_O, "tool_pose(q): (..., 4, 4)"},
     {"dh_frames", py_dh_frames, METH_O, "dh_frames(q): (..., 6, 4, 4)"},
     {"jacobian", py_jacobian, METH_O, "jacobian(q): (..., 6, 5)"},
+    {"smallest_singular_value", py_smallest_singular_value, METH_O,
+     "smallest_singular_value(q): of the Jacobian, (...)"},
     {"branches", (PyCFunction)(void (*)(void))py_branches, METH_FASTCALL,
      "branches(T, lower, upper, seed): the five fields of inverse.Branches"},
     {"solutions", (PyCFunction)(void (*)(void))py_solutions, METH_FASTCALL,

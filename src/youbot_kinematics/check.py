@@ -22,8 +22,7 @@ from .contract import (
     shape_problems,
     trajectory_from_command,
 )
-from .kinematics import dh_frames, jacobian
-from .singularity import smallest_singular_value
+from .kinematics import smallest_singular_value, tool_pose
 from .trajectory import Trajectory, interpolate
 
 #: The trajectory is evaluated this often, s; but no more than so many times from point to point.
@@ -196,14 +195,13 @@ def _moments(trajectory: Trajectory) -> Iterator[np.ndarray]:
 
 def _peaks(trajectory: Trajectory, times, checkpoints) -> _Peaks:
     q, v, a = interpolate(trajectory, times)
-    frames = dh_frames(q)
     return _Peaks(
         q.min(axis=0),
         q.max(axis=0),
         np.abs(v).max(axis=0),
         np.abs(a).max(axis=0),
-        float(smallest_singular_value(jacobian(q)).min()),
-        _line_distance(trajectory.segments, times, frames[:, -1, :3, 3], checkpoints),
+        float(smallest_singular_value(q).min()),
+        _line_distance(trajectory.segments, times, tool_pose(q)[:, :3, 3], checkpoints),
     )
 
 
@@ -225,7 +223,7 @@ def _missed(trajectory, checkpoints):
     """By how much each checkpoint after the start is missed: distances (m) and angles (rad)."""
     if checkpoints is None:
         return (), ()
-    T = dh_frames(trajectory.positions)[:, -1]
+    T = tool_pose(trajectory.positions)
     distances, angles = [], []
     for number, wanted in enumerate(checkpoints[1:], start=1):
         ends = [s.end for s in trajectory.segments if s.to_checkpoint == number]
