@@ -1,5 +1,5 @@
-/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; and search.c, the
-   steps of the search for joint paths.
+/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; stand.c for
+   a position alone, and search.c, both for the search for joint paths.
 
    Plain C, one configuration at a time; module.c offers them to Python, for one and for many.
 
@@ -91,12 +91,28 @@ typedef struct {
 Flaws flaws(const Pose T);
 bool is_rigid(const Pose T);
 
+/* --- stand.c --- */
+
+enum { STAND_JOINTS = 4 }; /* joint 5 turns the tool in its place */
+
+/* A place of the tool: where it is in the plane of an arm that reaches forward to it, at an azimuth,
+   and how far joints keep from their limits there, rad. */
+typedef struct { double azimuth; Point point; double margin; } Place;
+
+/* Joints 1 to 4 with the elbow + and -, on a track (0 front, 1 back), turned next to their limits;
+   and by how much each passes them, less the margin: NaN where the wrist is out of reach. */
+void stand(const Place *place, int track, double pitch, const Limits *limits,
+           double joints[2][STAND_JOINTS], double excess[2][STAND_JOINTS]);
+/* Where the arm can stand in each cell of BRANCHES x n_cells, of which each has so many pitches, an
+   odd number: in the valid one next to its middle, NaN if there is none. */
+void standings(const Place *place, const double *pitches, int n_cells, int finer,
+               const Limits *limits, float *joints, float *pitch);
+
 /* --- search.c --- */
 
-/* Where the arm may stand at a waypoint: joints 1 to 4 over their velocities, in s, NaN if it
-   cannot. A waypoint has BRANCHES x n_pitches cells, numbered branch * n_pitches + pitch. */
-enum { CELL_JOINTS = 4 };
-typedef float Cell[CELL_JOINTS];
+/* A cell of a waypoint: joints 1 to 4 over their velocities, in s, NaN where the arm cannot stand.
+   A waypoint has BRANCHES x n_pitches of them, numbered branch * n_pitches + pitch. */
+typedef float Cell[STAND_JOINTS];
 
 /* The least cost (s) of each cell of a waypoint, given those of the cells before, and the cell that
    it comes from: by steps on one branch, to no more than `reach` pitches on round the circle, in

@@ -358,14 +358,71 @@ static PyObject *py_turned(PyObject *module, PyObject *const *args, Py_ssize_t n
     return (PyObject *)result;
 }
 
-/* --- the search, whose arrays search.py always makes as they must be: else it is a TypeError --- */
+/* --- where the arm can stand, for resolve/, whose arrays are always as they must be: else it is a
+   TypeError --- */
 
-/* Whether an array has values of a type, so many for each cell, one after the other. */
-static bool has_cells(PyArrayObject *array, int type, npy_intp n_cells, int per_cell)
+enum { PLACE_SIZE = sizeof(Place) / sizeof(double) };
+
+/* Whether an array has n values of a type, one after the other. */
+static bool has(PyArrayObject *array, int type, npy_intp n)
 {
-    return PyArray_TYPE(array) == type && PyArray_ISCARRAY_RO(array)
-        && PyArray_SIZE(array) == n_cells * per_cell;
+    return PyArray_TYPE(array) == type && PyArray_ISCARRAY_RO(array) && PyArray_SIZE(array) == n;
 }
+
+static PyObject *unusable(void)
+{
+    return PyErr_Occurred() ? NULL : PyErr_Format(PyExc_TypeError, "not what resolve makes");
+}
+
+static PyObject *py_stand(PyObject *module, PyObject *args)
+{
+    PyArrayObject *places, *branch, *pitch;
+    PyObject *lower, *upper;
+    Limits limits;
+    if (!PyArg_ParseTuple(args, "O!O!O!OO", &PyArray_Type, &places, &PyArray_Type, &branch,
+                          &PyArray_Type, &pitch, &lower, &upper))
+        return NULL;
+    npy_intp n = PyArray_SIZE(pitch), dims[] = {n, STAND_JOINTS};
+    if (!has(places, NPY_DOUBLE, n * PLACE_SIZE) || !has(branch, NPY_INTP, n)
+        || !has(pitch, NPY_DOUBLE, n) || !read_joints(lower, limits.lower)
+        || !read_joints(upper, limits.upper))
+        return unusable();
+    PyArrayObject *joints = (PyArrayObject *)PyArray_SimpleNew(2, dims, NPY_DOUBLE);
+    PyArrayObject *excess = (PyArrayObject *)PyArray_SimpleNew(2, dims, NPY_DOUBLE);
+    for (npy_intp i = 0; joints && excess && i < n; i++) {
+        double q[2][STAND_JOINTS], beyond[2][STAND_JOINTS];
+        npy_intp at = ((npy_intp *)PyArray_DATA(branch))[i];
+        stand((Place *)PyArray_DATA(places) + i, at / 2 % 2, ((double *)PyArray_DATA(pitch))[i],
+              &limits, q, beyond);
+        memcpy(PyArray_GETPTR1(joints, i), q[at % 2], sizeof q[0]);
+        memcpy(PyArray_GETPTR1(excess, i), beyond[at % 2], sizeof q[0]);
+    }
+    return Py_BuildValue("NN", joints, excess);
+}
+
+static PyObject *py_standings(PyObject *module, PyObject *args)
+{
+    PyArrayObject *places, *pitches;
+    PyObject *lower, *upper;
+    Limits limits;
+    int finer;
+    if (!PyArg_ParseTuple(args, "O!O!iOO", &PyArray_Type, &places, &PyArray_Type, &pitches, &finer,
+                          &lower, &upper))
+        return NULL;
+    npy_intp n = PyArray_SIZE(places) / PLACE_SIZE, n_tried = PyArray_SIZE(pitches);
+    if (!has(places, NPY_DOUBLE, n * PLACE_SIZE) || !has(pitches, NPY_DOUBLE, n_tried) || finer < 1
+        || n_tried % finer || !read_joints(lower, limits.lower) || !read_joints(upper, limits.upper))
+        return unusable();
+    npy_intp n_cells = n_tried / finer, dims[] = {n, BRANCHES, n_cells, STAND_JOINTS};
+    PyArrayObject *joints = (PyArrayObject *)PyArray_SimpleNew(4, dims, NPY_FLOAT);
+    PyArrayObject *pitch = (PyArrayObject *)PyArray_SimpleNew(3, dims, NPY_FLOAT);
+    for (npy_intp i = 0; joints && pitch && i < n; i++)
+        standings((Place *)PyArray_DATA(places) + i, PyArray_DATA(pitches), (int)n_cells, finer,
+                  &limits, PyArray_GETPTR1(joints, i), PyArray_GETPTR1(pitch, i));
+    return Py_BuildValue("NN", joints, pitch);
+}
+
+/* --- the search, likewise --- */
 
 /* New arrays for the costs of cells and for where they come from. */
 static PyObject *new_step(npy_intp n_cells, double **total, int16_t **origin)
@@ -386,9 +443,9 @@ static PyObject *py_smooth_step(PyObject *module, PyObject *args)
                           &PyArray_Type, &cost, &reach, &tear))
         return NULL;
     npy_intp n = PyArray_SIZE(cost);
-    if (!has_cells(before, NPY_FLOAT, n, CELL_JOINTS) || !has_cells(after, NPY_FLOAT, n, CELL_JOINTS)
-        || !has_cells(cost, NPY_DOUBLE, n, 1) || n % BRANCHES || n / BRANCHES < reach)
-        return PyErr_Format(PyExc_TypeError, "these are not cells of a search");
+    if (!has(before, NPY_FLOAT, n * STAND_JOINTS) || !has(after, NPY_FLOAT, n * STAND_JOINTS)
+        || !has(cost, NPY_DOUBLE, n) || n % BRANCHES || n / BRANCHES < reach)
+        return unusable();
     double *total;
     int16_t *origin;
     PyObject *step = new_step(n, &total, &origin);
@@ -407,10 +464,9 @@ static PyObject *py_move(PyObject *module, PyObject *args)
                           &rate, &extra))
         return NULL;
     npy_intp n = PyArray_SIZE(cost);
-    if (!has_cells(before, NPY_FLOAT, n, CELL_JOINTS) || !has_cells(after, NPY_FLOAT, n, CELL_JOINTS)
-        || !has_cells(cost, NPY_DOUBLE, n, 1) || !has_cells(sources, NPY_BOOL, n, 1)
-        || !has_cells(targets, NPY_BOOL, n, 1))
-        return PyErr_Format(PyExc_TypeError, "these are not cells of a search");
+    if (!has(before, NPY_FLOAT, n * STAND_JOINTS) || !has(after, NPY_FLOAT, n * STAND_JOINTS)
+        || !has(cost, NPY_DOUBLE, n) || !has(sources, NPY_BOOL, n) || !has(targets, NPY_BOOL, n))
+        return unusable();
     double *total;
     int16_t *origin;
     PyObject *step = new_step(n, &total, &origin);
@@ -442,6 +498,10 @@ static PyMethodDef FUNCTIONS[] = {
      "two_links(rows of x, y, l1, l2): a (..., 2), b (..., 2), out of reach (...)"},
     {"turned", (PyCFunction)(void (*)(void))py_turned, METH_FASTCALL,
      "turned(angles, lower, upper): next to their ranges by whole turns"},
+    {"stand", py_stand, METH_VARARGS,
+     "stand(places, branches, pitches, lower, upper): joints 1 to 4 (n, 4), their excess (n, 4)"},
+    {"standings", py_standings, METH_VARARGS,
+     "standings(places, pitches, finer, lower, upper): joints (n, 4, P, 4), pitches (n, 4, P)"},
     {"smooth_step", py_smooth_step, METH_VARARGS,
      "smooth_step(before, after, cost, reach, tear): costs (n_cells,), where from (n_cells,)"},
     {"move", py_move, METH_VARARGS,

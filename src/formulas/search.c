@@ -9,7 +9,7 @@
 static inline double step_time(const Cell before, const Cell after, float tear)
 {
     float longest = 0;
-    for (int j = 0; j < CELL_JOINTS; j++) {
+    for (int j = 0; j < STAND_JOINTS; j++) {
         float time = fabsf(after[j] - before[j]);
         if (!(time <= tear)) /* NaN is no way either */
             return INFINITY;
@@ -52,7 +52,7 @@ static inline double move_time(double distance, double rate)
 static inline double distance(const Cell before, const Cell after)
 {
     double longest = 0;
-    for (int j = 0; j < CELL_JOINTS; j++)
+    for (int j = 0; j < STAND_JOINTS; j++)
         longest = fmax(longest, fabs((double)after[j] - before[j]));
     return longest;
 }
