@@ -103,16 +103,16 @@ typedef struct { double azimuth; Point point; double margin; } Place;
    and by how much each passes them, less the margin: NaN where the wrist is out of reach. */
 void stand(const Place *place, int track, double pitch, const Limits *limits,
            double joints[2][STAND_JOINTS], double excess[2][STAND_JOINTS]);
-/* Where the arm can stand in each cell of BRANCHES x n_cells, of which each has so many pitches, an
-   odd number: in the valid one next to its middle, NaN if there is none. */
+/* A cell of a waypoint: joints 1 to 4 over their velocities, in s, NaN where the arm cannot stand.
+   A waypoint has BRANCHES x n_cells of them, numbered branch * n_cells + pitch. */
+typedef float Cell[STAND_JOINTS];
+
+/* The cells of a place, and the pitch in each of them. So many pitches, an odd number, are tried in
+   a cell, from its middle outwards, until one is valid. */
 void standings(const Place *place, const double *pitches, int n_cells, int finer,
-               const Limits *limits, float *joints, float *pitch);
+               const Limits *limits, const Joints velocity, Cell *cells, float *pitch);
 
 /* --- search.c --- */
-
-/* A cell of a waypoint: joints 1 to 4 over their velocities, in s, NaN where the arm cannot stand.
-   A waypoint has BRANCHES x n_pitches of them, numbered branch * n_pitches + pitch. */
-typedef float Cell[STAND_JOINTS];
 
 /* The least cost (s) of each cell of a waypoint, given those of the cells before, and the cell that
    it comes from: by steps on one branch, to no more than `reach` pitches on round the circle, in

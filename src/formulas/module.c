@@ -403,23 +403,25 @@ static PyObject *py_stand(PyObject *module, PyObject *args)
 static PyObject *py_standings(PyObject *module, PyObject *args)
 {
     PyArrayObject *places, *pitches;
-    PyObject *lower, *upper;
+    PyObject *lower, *upper, *velocities;
     Limits limits;
+    Joints velocity;
     int finer;
-    if (!PyArg_ParseTuple(args, "O!O!iOO", &PyArray_Type, &places, &PyArray_Type, &pitches, &finer,
-                          &lower, &upper))
+    if (!PyArg_ParseTuple(args, "O!O!iOOO", &PyArray_Type, &places, &PyArray_Type, &pitches, &finer,
+                          &lower, &upper, &velocities))
         return NULL;
     npy_intp n = PyArray_SIZE(places) / PLACE_SIZE, n_tried = PyArray_SIZE(pitches);
     if (!has(places, NPY_DOUBLE, n * PLACE_SIZE) || !has(pitches, NPY_DOUBLE, n_tried) || finer < 1
-        || n_tried % finer || !read_joints(lower, limits.lower) || !read_joints(upper, limits.upper))
+        || n_tried % finer || !read_joints(lower, limits.lower) || !read_joints(upper, limits.upper)
+        || !read_joints(velocities, velocity))
         return unusable();
     npy_intp n_cells = n_tried / finer, dims[] = {n, BRANCHES, n_cells, STAND_JOINTS};
-    PyArrayObject *joints = (PyArrayObject *)PyArray_SimpleNew(4, dims, NPY_FLOAT);
+    PyArrayObject *cells = (PyArrayObject *)PyArray_SimpleNew(4, dims, NPY_FLOAT);
     PyArrayObject *pitch = (PyArrayObject *)PyArray_SimpleNew(3, dims, NPY_FLOAT);
-    for (npy_intp i = 0; joints && pitch && i < n; i++)
+    for (npy_intp i = 0; cells && pitch && i < n; i++)
         standings((Place *)PyArray_DATA(places) + i, PyArray_DATA(pitches), (int)n_cells, finer,
-                  &limits, PyArray_GETPTR1(joints, i), PyArray_GETPTR1(pitch, i));
-    return Py_BuildValue("NN", joints, pitch);
+                  &limits, velocity, PyArray_GETPTR1(cells, i), PyArray_GETPTR1(pitch, i));
+    return Py_BuildValue("NN", cells, pitch);
 }
 
 /* --- the search, likewise --- */
@@ -501,7 +503,7 @@ static PyMethodDef FUNCTIONS[] = {
     {"stand", py_stand, METH_VARARGS,
      "stand(places, branches, pitches, lower, upper): joints 1 to 4 (n, 4), their excess (n, 4)"},
     {"standings", py_standings, METH_VARARGS,
-     "standings(places, pitches, finer, lower, upper): joints (n, 4, P, 4), pitches (n, 4, P)"},
+     "standings(places, pitches, finer, *limits): cells (n, 4, P, 4), pitches (n, 4, P)"},
     {"smooth_step", py_smooth_step, METH_VARARGS,
      "smooth_step(before, after, cost, reach, tear): costs (n_cells,), where from (n_cells,)"},
     {"move", py_move, METH_VARARGS,

@@ -35,14 +35,9 @@ static inline bool is_zero(const double excess[STAND_JOINTS])
 
 /* The cell of a pitch on both branches of a track: see standings. */
 static void fill_cell(const Place *place, int track, const double *pitches, int finer,
-                      const Limits *limits, float *cells[2], float *at[2])
+                      const Limits *limits, const Joints velocity, float *cells[2], float *at[2])
 {
     bool found[2] = {false, false};
-    for (int elbow = 0; elbow < 2; elbow++) {
-        *at[elbow] = (float)pitches[finer / 2];
-        for (int j = 0; j < STAND_JOINTS; j++)
-            cells[elbow][j] = NAN;
-    }
     for (int i = 0; i < finer && !(found[0] && found[1]); i++) {
         double pitch = pitches[finer / 2 + (i % 2 ? -(i + 1) / 2 : i / 2)]; /* from the middle out */
         double joints[2][STAND_JOINTS], excess[2][STAND_JOINTS];
@@ -53,19 +48,34 @@ static void fill_cell(const Place *place, int track, const double *pitches, int 
             found[elbow] = true;
             *at[elbow] = (float)pitch;
             for (int j = 0; j < STAND_JOINTS; j++)
-                cells[elbow][j] = (float)joints[elbow][j];
+                cells[elbow][j] = (float)joints[elbow][j] / (float)velocity[j];
         }
     }
 }
 
-void standings(const Place *place, const double *pitches, int n_cells, int finer,
-               const Limits *limits, float *joints, float *pitch)
+/* Whether joint 1 is inside its limits on a track: it does not depend on the pitch. */
+static bool is_open(const Place *place, int track, const Limits *limits)
 {
-    for (int track = 0; track < 2; track++)
-        for (int cell = 0; cell < n_cells; cell++) {
-            int plus = 2 * track * n_cells + cell, minus = plus + n_cells;
-            float *cells[2] = {joints + plus * STAND_JOINTS, joints + minus * STAND_JOINTS};
-            float *at[2] = {pitch + plus, pitch + minus};
-            fill_cell(place, track, pitches + cell * finer, finer, limits, cells, at);
+    double ignored, azimuth = place->azimuth + PI * track;
+    double angle = turned(arm.offset[0] - azimuth, limits->lower[0], limits->upper[0], &ignored);
+    return excess_of(angle, limits->lower[0], limits->upper[0], place->margin) == 0;
+}
+
+void standings(const Place *place, const double *pitches, int n_cells, int finer,
+               const Limits *limits, const Joints velocity, Cell *cells, float *pitch)
+{
+    for (int i = 0; i < BRANCHES * n_cells; i++) {
+        pitch[i] = (float)pitches[i % n_cells * finer + finer / 2];
+        for (int j = 0; j < STAND_JOINTS; j++)
+            cells[i][j] = NAN;
+    }
+    for (int track = 0; track < 2; track++) {
+        if (!is_open(place, track, limits))
+            continue;
+        for (int i = 0; i < n_cells; i++) {
+            int plus = 2 * track * n_cells + i, minus = plus + n_cells;
+            float *both[2] = {cells[plus], cells[minus]}, *at[2] = {pitch + plus, pitch + minus};
+            fill_cell(place, track, pitches + i * finer, finer, limits, velocity, both, at);
         }
+    }
 }

@@ -44,23 +44,23 @@ def lay_out(lines, exact, limits: arm.JointLimits, rate: float) -> Tour:
         PlanningError: a checkpoint is out of reach.
     """
     fractions = [line.waypoints() for line in lines]
-    fine = [np.zeros(len(u), dtype=bool) for u in fractions]
-    tour = _build(lines, fractions, fine, exact, limits, rate)
+    route = route_along(lines, fractions)
+    fine = np.zeros(len(route.u), dtype=bool)
+    cells = standings(route, limits, _N_CELLS)
+    tour = _build(lines, route, fine, cells, exact, limits, rate)
     for _ in range(_CUT_ROUNDS):
         blocked = _blocked(tour.graph)
         if not blocked.any():
             return tour
-        fractions, fine = _cut(tour, blocked)
-        tour = _build(lines, fractions, fine, exact, limits, rate)
+        route, fine, cells = _cut(tour, blocked, limits)
+        tour = _build(lines, route, fine, cells, exact, limits, rate)
     return _with_detours(tour)
 
 
-def _build(lines, fractions, fine, exact, limits, rate) -> Tour:
-    route = route_along(lines, fractions)
-    fine = np.concatenate(fine)
-    joints, pitch = standings(route, limits, _N_CELLS)
-    if fine.any():
-        joints[fine], pitch[fine] = standings(route.take(fine), limits, _N_CELLS, _FINER)
+def _build(lines, route: Route, fine, cells, exact, limits, rate) -> Tour:
+    """The tour over a route, given what ``standings`` finds along it, which this changes."""
+    joints, pitch = cells
+    velocity = limits.velocity[:4].astype(np.float32)
     demanded: dict = {}
     confined: dict = {}
     apart: dict = {}
@@ -73,13 +73,13 @@ def _build(lines, fractions, fine, exact, limits, rate) -> Tour:
             branch, in_plane = branch_of(route, k, q)
             cell = branch * _N_CELLS + int(cell_of(pitch_of(q), _N_CELLS))
             demanded[int(k), cell] = q
-            joints[k].reshape(-1, 4)[cell] = q[:4]
+            joints[k].reshape(-1, 4)[cell] = q[:4].astype(np.float32) / velocity
             pitch[k].reshape(-1)[cell] = pitch_of(q)
             confined.setdefault(int(k), []).append(cell)
             if not in_plane:
                 apart.setdefault(int(k), []).append(cell)
     graph = Graph(
-        joints=joints / limits.velocity[:4].astype(np.float32),
+        joints=joints,
         valid=np.isfinite(joints[..., 0]),
         links=_links(route),
         start=confined.pop(0)[0],
@@ -122,11 +122,12 @@ def _blocked(graph: Graph) -> np.ndarray:
     return blocked
 
 
-def _cut(tour: Tour, blocked):
-    """Fractions of each line with the first and last step of blocked stretches cut in more.
+def _cut(tour: Tour, blocked, limits):
+    """The route with the first and last step of each blocked stretch cut in more.
 
     Returns:
-        Fractions and, for each, whether it is at such a stretch and wants finer pitches: two lists.
+        The route; for each waypoint whether it is at such a stretch and wants finer pitches, (K,)
+        bool; and what ``standings`` finds along it.
     """
     route = tour.route
     first = blocked & ~np.append(False, blocked[:-1])
@@ -143,7 +144,17 @@ def _cut(tour: Tour, blocked):
         order = np.argsort(u)
         fractions.append(u[order])
         fine.append(np.append(near[on_line], np.ones(len(added), dtype=bool))[order])
-    return fractions, fine
+    route, wants = route_along(tour.lines, fractions), np.concatenate(fine)
+    coarse = tour.graph.joints[~near], tour.pitch[~near]
+    found = standings(route.take(wants), limits, _N_CELLS, _FINER)
+    return route, wants, [_interleaved(wants, *parts) for parts in zip(found, coarse)]
+
+
+def _interleaved(chosen, these, others) -> np.ndarray:
+    """The rows of two arrays in one: these where ``chosen`` (n,) bool, the others elsewhere."""
+    whole = np.empty((len(chosen), *these.shape[1:]), these.dtype)
+    whole[chosen], whole[~chosen] = these, others
+    return whole
 
 
 def _with_detours(tour: Tour) -> Tour:

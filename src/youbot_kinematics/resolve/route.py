@@ -83,11 +83,12 @@ def standings(route: Route, limits: arm.JointLimits, n_cells: int, finer: int = 
         finer: how many pitches are tried in a cell, odd. The valid one next to its middle is taken.
 
     Returns:
-        ``(joints, pitch)``: joints 1 to 4, (K, 4, n_cells, 4) rad, NaN where the arm cannot stand,
-        and the pitch there (K, 4, n_cells), rad; both float32, to save memory.
+        ``(cells, pitch)``, both float32, to save memory: joints 1 to 4 over their velocities,
+        (K, 4, n_cells, 4) s, NaN where the arm cannot stand; the pitch there, (K, 4, n_cells) rad.
     """
     tried = pitch_grid(n_cells * finer)
-    return formulas.standings(route.places(), tried, finer, limits.lower, limits.upper)
+    bounds = limits.lower, limits.upper, limits.velocity
+    return formulas.standings(route.places(), tried, finer, *bounds)
 
 
 def branch_of(route: Route, k: int, q: np.ndarray):
