@@ -202,7 +202,7 @@ def test_a_checkpoint_out_of_reach_is_named():
 def neighbours(graph, k, cell, arrived):
     """Every change that the arm may make at a waypoint, and every step on: brute force."""
     n_pitches = graph.valid.shape[2]
-    joints = graph.joints.astype(float).reshape(4, len(graph.valid), -1)
+    joints = graph.joints.astype(float).reshape(len(graph.valid), -1, 4)
 
     def move_time(a, b):
         d = np.abs(a - b).max()
@@ -216,7 +216,7 @@ def neighbours(graph, k, cell, arrived):
         price += 0.0 if graph.checkpoint[k] else 1 / graph.rate
         for other in np.flatnonzero(graph.valid[k].ravel()):
             if other != cell and (confined is None or other in confined):
-                time = move_time(joints[:, k, cell], joints[:, k, other])
+                time = move_time(joints[k, cell], joints[k, other])
                 yield (k, int(other), False), time + price
         return
     link = graph.links[k]
@@ -224,7 +224,7 @@ def neighbours(graph, k, cell, arrived):
         branch, pitch = divmod(cell, n_pitches)
         for i in range(-REACH, REACH + 1):
             other = branch * n_pitches + (pitch + i) % n_pitches
-            time = np.abs(joints[:, k, cell] - joints[:, k + 1, other]).max()
+            time = np.abs(joints[k, cell] - joints[k + 1, other]).max()
             if time <= TEAR:
                 yield (k + 1, other, True), time
     elif link in (SAME, SWAPPED):
@@ -234,7 +234,7 @@ def neighbours(graph, k, cell, arrived):
     else:
         price = 0.0 if link == DETOUR else RECONFIGURATION_COST
         for other in np.flatnonzero(graph.valid[k + 1].ravel()):
-            time = move_time(joints[:, k, cell], joints[:, k + 1, other])
+            time = move_time(joints[k, cell], joints[k + 1, other])
             yield (k + 1, int(other), True), time + price
 
 
@@ -263,8 +263,8 @@ def thinned(graph, every=8):
     keep.sort()
     column = {int(p): i for i, p in enumerate(keep)}
     return graph._replace(
-        joints=graph.joints[..., keep],
-        valid=graph.valid[..., keep],
+        joints=graph.joints.take(keep, axis=2),
+        valid=graph.valid.take(keep, axis=2),
         start=branch * len(keep) + column[pitch],
     )
 
@@ -293,7 +293,7 @@ def test_no_walk_has_fewer_reconfigurations_or_less_time_than_the_one_found(seed
 def without(graph, dropped):
     index = np.flatnonzero(~dropped)
     return graph._replace(
-        joints=graph.joints[:, index],
+        joints=graph.joints[index],
         valid=graph.valid[index],
         links=graph.links[index[1:] - 1],
         checkpoint=graph.checkpoint[index],

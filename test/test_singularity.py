@@ -62,6 +62,23 @@ def test_kinds_of_one_configuration_have_names():
     assert KIN.classify_singularity(np.array([1.0, 1.0, -1.0, 1.0, 1.0])).names() == []
 
 
+def near(q, rng):
+    """Joints next to singular ones, at distances from 0.1 to 1e-17 rad."""
+    distance = 10.0 ** rng.uniform(-17, -1, (len(q), 1))
+    return q + distance * rng.uniform(-1, 1, q.shape)
+
+
+def test_the_smallest_singular_value_is_that_of_a_singular_value_decomposition():
+    rng = np.random.default_rng(1)
+    everywhere = rng.uniform(-np.pi, np.pi, (20_000, 5))
+    straight, folded = everywhere[:2000].copy(), everywhere[2000:4000].copy()
+    straight[:, 2], folded[:, 2] = STRAIGHT, STRAIGHT + np.pi
+    singular = np.concatenate([grid(), straight, folded])
+    for q in (everywhere, singular, near(singular, rng)):
+        decomposed = np.linalg.svd(KIN.get_jacobian(q), compute_uv=False)[:, -1]
+        assert np.abs(KIN.smallest_singular_value(q) - decomposed).max() < 1e-14
+
+
 def test_manipulability_is_the_root_of_the_determinant_where_there_is_one():
     q = np.random.default_rng(0).uniform(LIMITS.lower, LIMITS.upper, (500, 5))
     J = KIN.get_jacobian(q)

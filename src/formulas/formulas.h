@@ -1,4 +1,5 @@
-/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; and tour.c.
+/* The formulas of the arm: forward.c for given joints, inverse.c for a given pose; stand.c for a
+   position alone, and search.c, both for the search for joint paths; and tour.c for the order.
 
    Plain C, one configuration at a time; module.c offers them to Python, for one and for many.
 
@@ -18,6 +19,7 @@
 #define YOUBOT_FORMULAS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { JOINTS = 5, FRAMES = JOINTS + 1, BRANCHES = 4 };
 
@@ -49,6 +51,8 @@ void tool_pose(const Joints q, Pose T);
 void dh_frames(const Joints q, Pose T[FRAMES]);
 /* The geometric Jacobian of the tool: linear (m/rad) over angular velocity (rad/rad). */
 void jacobian(const Joints q, double J[6][JOINTS]);
+/* The smallest singular value of that, from its two blocks: see singularity.py. */
+double smallest_singular_value(const Joints q);
 
 /* --- inverse.c --- */
 
@@ -86,6 +90,40 @@ typedef struct {
 } Flaws;
 Flaws flaws(const Pose T);
 bool is_rigid(const Pose T);
+
+/* --- stand.c --- */
+
+enum { STAND_JOINTS = 4 }; /* joint 5 turns the tool in its place */
+
+/* A place of the tool: where it is in the plane of an arm that reaches forward to it, at an azimuth,
+   and how far joints keep from their limits there, rad. */
+typedef struct { double azimuth; Point point; double margin; } Place;
+
+/* Joints 1 to 4 with the elbow + and -, on a track (0 front, 1 back), turned next to their limits;
+   and by how much each passes them, less the margin: NaN where the wrist is out of reach. */
+void stand(const Place *place, int track, double pitch, const Limits *limits,
+           double joints[2][STAND_JOINTS], double excess[2][STAND_JOINTS]);
+/* A cell of a waypoint: joints 1 to 4 over their velocities, in s, NaN where the arm cannot stand.
+   A waypoint has BRANCHES x n_cells of them, numbered branch * n_cells + pitch. */
+typedef float Cell[STAND_JOINTS];
+
+/* The cells of a place, and the pitch in each of them. So many pitches, an odd number, are tried in
+   a cell, from its middle outwards, until one is valid. */
+void standings(const Place *place, const double *pitches, int n_cells, int finer,
+               const Limits *limits, const Joints velocity, Cell *cells, float *pitch);
+
+/* --- search.c --- */
+
+/* The least cost (s) of each cell of a waypoint, given those of the cells before, and the cell that
+   it comes from: by steps on one branch, to no more than `reach` pitches on round the circle, in
+   which no joint moves for longer than the tear (s). INFINITY where there is none. */
+void smooth_step(const Cell *before, const Cell *after, const double *cost, int n_pitches,
+                 int reach, float tear, double *total, int16_t *origin);
+/* The same by moves from rest to rest, which cost their time and something extra (s), from any of
+   the sources to any of the targets; the rate is acceleration over velocity, 1/s. */
+void move(const Cell *before, const Cell *after, const double *cost, const bool *sources,
+          const bool *targets, int n_cells, double rate, double extra, double *total,
+          int16_t *origin);
 
 /* --- tour.c --- */
 

@@ -1,4 +1,4 @@
-/* The tool, the frames and the Jacobian for given joints.
+/* The tool, the frames, the Jacobian and its smallest singular value for given joints.
 
    Sources: Siciliano et al., "Robotics: Modelling, Planning and Control" (2009), sections 2.8
    (Denavit-Hartenberg) and 3.1 (geometric Jacobian). */
@@ -6,6 +6,11 @@
 
 #include <math.h>
 #include <string.h>
+
+/* Columns at an angle whose squared cosine is smaller are at right angles to rounding once they are
+   turned, which squares it. No more sweeps over them are made than ever help: it takes some five. */
+#define ORTHOGONAL 1e-16
+#define MOST_SWEEPS 12
 
 /* An angle, as it is needed. */
 typedef struct { double cos, sin; } Turn;
@@ -127,4 +132,58 @@ void jacobian(const Joints q, double J[6][JOINTS])
     /* Joint 5 turns about minus the tool's z axis, and the tool is on that. */
     J[0][4] = 0, J[1][4] = 0, J[2][4] = 0;
     J[3][4] = -phi.cos * beta.sin, J[4][4] = -phi.sin * beta.sin, J[5][4] = -beta.cos;
+}
+
+/* --- singular values --- */
+
+/* Turns two columns of a matrix into two at right angles, which leaves its singular values as they
+   are. Returns the squared cosine of the angle that they had. */
+static double make_orthogonal(double x[3], double y[3])
+{
+    double xx = 0, yy = 0, xy = 0;
+    for (int i = 0; i < 3; i++)
+        xx += x[i] * x[i], yy += y[i] * y[i], xy += x[i] * y[i];
+    if (xy == 0)
+        return 0;
+    double ratio = (yy - xx) / (2 * xy);
+    double tangent = copysign(1, ratio) / (fabs(ratio) + sqrt(1 + ratio * ratio));
+    double cosine = 1 / sqrt(1 + tangent * tangent), sine = cosine * tangent;
+    for (int i = 0; i < 3; i++) {
+        double turned = cosine * x[i] - sine * y[i];
+        y[i] = sine * x[i] + cosine * y[i];
+        x[i] = turned;
+    }
+    return xy * xy / (xx * yy);
+}
+
+/* The smallest singular value of a 3 x n matrix with these columns, which it turns: where all are at
+   right angles, their lengths are the singular values. Source: Hestenes, "Inversion of matrices by
+   biorthogonalization and related results" (1958). */
+static double smallest_value(double columns[][3], int n)
+{
+    double most = 1, smallest = INFINITY;
+    for (int sweep = 0; most > ORTHOGONAL && sweep < MOST_SWEEPS; sweep++) {
+        most = 0;
+        for (int i = 0; i < n; i++)
+            for (int j = i + 1; j < n; j++)
+                most = fmax(most, make_orthogonal(columns[i], columns[j]));
+    }
+    for (int i = 0; i < n; i++) {
+        const double *x = columns[i];
+        smallest = fmin(smallest, sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
+    }
+    return smallest;
+}
+
+double smallest_singular_value(const Joints q)
+{
+    Posture p = posture(q);
+    Chain c = chain(&p);
+    double in_plane[3][3] = {
+        {c.tool.z - c.shoulder.z, c.shoulder.r - c.tool.r, 1},
+        {c.tool.z - c.elbow.z, c.elbow.r - c.tool.r, 1},
+        {c.tool.z - c.wrist.z, c.wrist.r - c.tool.r, 1},
+    };
+    double across[2][3] = {{c.tool.r, 0, 1}, {0, p.beta.sin, p.beta.cos}};
+    return fmin(smallest_value(in_plane, 3), smallest_value(across, 2));
 }

@@ -103,6 +103,11 @@ static void jacobian_at(const double *q, double *J)
     jacobian(q, (double(*)[JOINTS])J);
 }
 
+static void smallest_singular_value_at(const double *q, double *value)
+{
+    *value = smallest_singular_value(q);
+}
+
 static PyObject *py_tool_pose(PyObject *module, PyObject *q)
 {
     return of_joints(q, tool_pose_at, 2, POSE_SHAPE);
@@ -116,6 +121,11 @@ static PyObject *py_dh_frames(PyObject *module, PyObject *q)
 static PyObject *py_jacobian(PyObject *module, PyObject *q)
 {
     return of_joints(q, jacobian_at, 2, (npy_intp[]){6, JOINTS});
+}
+
+static PyObject *py_smallest_singular_value(PyObject *module, PyObject *q)
+{
+    return of_joints(q, smallest_singular_value_at, 0, NULL);
 }
 
 /* --- inverse --- */
@@ -348,6 +358,126 @@ static PyObject *py_turned(PyObject *module, PyObject *const *args, Py_ssize_t n
     return (PyObject *)result;
 }
 
+/* --- where the arm can stand, for resolve/, whose arrays are always as they must be: else it is a
+   TypeError --- */
+
+enum { PLACE_SIZE = sizeof(Place) / sizeof(double) };
+
+/* Whether an array has n values of a type, one after the other. */
+static bool has(PyArrayObject *array, int type, npy_intp n)
+{
+    return PyArray_TYPE(array) == type && PyArray_ISCARRAY_RO(array) && PyArray_SIZE(array) == n;
+}
+
+static PyObject *unusable(void)
+{
+    return PyErr_Occurred() ? NULL : PyErr_Format(PyExc_TypeError, "not what resolve makes");
+}
+
+static PyObject *py_stand(PyObject *module, PyObject *args)
+{
+    PyArrayObject *places, *branch, *pitch;
+    PyObject *lower, *upper;
+    Limits limits;
+    if (!PyArg_ParseTuple(args, "O!O!O!OO", &PyArray_Type, &places, &PyArray_Type, &branch,
+                          &PyArray_Type, &pitch, &lower, &upper))
+        return NULL;
+    npy_intp n = PyArray_SIZE(pitch), dims[] = {n, STAND_JOINTS};
+    if (!has(places, NPY_DOUBLE, n * PLACE_SIZE) || !has(branch, NPY_INTP, n)
+        || !has(pitch, NPY_DOUBLE, n) || !read_joints(lower, limits.lower)
+        || !read_joints(upper, limits.upper))
+        return unusable();
+    PyArrayObject *joints = (PyArrayObject *)PyArray_SimpleNew(2, dims, NPY_DOUBLE);
+    PyArrayObject *excess = (PyArrayObject *)PyArray_SimpleNew(2, dims, NPY_DOUBLE);
+    for (npy_intp i = 0; joints && excess && i < n; i++) {
+        double q[2][STAND_JOINTS], beyond[2][STAND_JOINTS];
+        npy_intp at = ((npy_intp *)PyArray_DATA(branch))[i];
+        stand((Place *)PyArray_DATA(places) + i, at / 2 % 2, ((double *)PyArray_DATA(pitch))[i],
+              &limits, q, beyond);
+        memcpy(PyArray_GETPTR1(joints, i), q[at % 2], sizeof q[0]);
+        memcpy(PyArray_GETPTR1(excess, i), beyond[at % 2], sizeof q[0]);
+    }
+    return Py_BuildValue("NN", joints, excess);
+}
+
+static PyObject *py_standings(PyObject *module, PyObject *args)
+{
+    PyArrayObject *places, *pitches;
+    PyObject *lower, *upper, *velocities;
+    Limits limits;
+    Joints velocity;
+    int finer;
+    if (!PyArg_ParseTuple(args, "O!O!iOOO", &PyArray_Type, &places, &PyArray_Type, &pitches, &finer,
+                          &lower, &upper, &velocities))
+        return NULL;
+    npy_intp n = PyArray_SIZE(places) / PLACE_SIZE, n_tried = PyArray_SIZE(pitches);
+    if (!has(places, NPY_DOUBLE, n * PLACE_SIZE) || !has(pitches, NPY_DOUBLE, n_tried) || finer < 1
+        || n_tried % finer || !read_joints(lower, limits.lower) || !read_joints(upper, limits.upper)
+        || !read_joints(velocities, velocity))
+        return unusable();
+    npy_intp n_cells = n_tried / finer, dims[] = {n, BRANCHES, n_cells, STAND_JOINTS};
+    PyArrayObject *cells = (PyArrayObject *)PyArray_SimpleNew(4, dims, NPY_FLOAT);
+    PyArrayObject *pitch = (PyArrayObject *)PyArray_SimpleNew(3, dims, NPY_FLOAT);
+    for (npy_intp i = 0; cells && pitch && i < n; i++)
+        standings((Place *)PyArray_DATA(places) + i, PyArray_DATA(pitches), (int)n_cells, finer,
+                  &limits, velocity, PyArray_GETPTR1(cells, i), PyArray_GETPTR1(pitch, i));
+    return Py_BuildValue("NN", cells, pitch);
+}
+
+/* --- the search, likewise --- */
+
+/* New arrays for the costs of cells and for where they come from. */
+static PyObject *new_step(npy_intp n_cells, double **total, int16_t **origin)
+{
+    PyArrayObject *costs = (PyArrayObject *)PyArray_SimpleNew(1, &n_cells, NPY_DOUBLE);
+    PyArrayObject *cells = (PyArrayObject *)PyArray_SimpleNew(1, &n_cells, NPY_INT16);
+    *total = costs ? PyArray_DATA(costs) : NULL;
+    *origin = cells ? PyArray_DATA(cells) : NULL;
+    return Py_BuildValue("NN", costs, cells);
+}
+
+static PyObject *py_smooth_step(PyObject *module, PyObject *args)
+{
+    PyArrayObject *before, *after, *cost;
+    int reach;
+    float tear;
+    if (!PyArg_ParseTuple(args, "O!O!O!if", &PyArray_Type, &before, &PyArray_Type, &after,
+                          &PyArray_Type, &cost, &reach, &tear))
+        return NULL;
+    npy_intp n = PyArray_SIZE(cost);
+    if (!has(before, NPY_FLOAT, n * STAND_JOINTS) || !has(after, NPY_FLOAT, n * STAND_JOINTS)
+        || !has(cost, NPY_DOUBLE, n) || n % BRANCHES || n / BRANCHES < reach)
+        return unusable();
+    double *total;
+    int16_t *origin;
+    PyObject *step = new_step(n, &total, &origin);
+    if (step)
+        smooth_step(PyArray_DATA(before), PyArray_DATA(after), PyArray_DATA(cost),
+                    (int)n / BRANCHES, reach, tear, total, origin);
+    return step;
+}
+
+static PyObject *py_move(PyObject *module, PyObject *args)
+{
+    PyArrayObject *before, *after, *cost, *sources, *targets;
+    double rate, extra;
+    if (!PyArg_ParseTuple(args, "O!O!O!O!O!dd", &PyArray_Type, &before, &PyArray_Type, &after,
+                          &PyArray_Type, &cost, &PyArray_Type, &sources, &PyArray_Type, &targets,
+                          &rate, &extra))
+        return NULL;
+    npy_intp n = PyArray_SIZE(cost);
+    if (!has(before, NPY_FLOAT, n * STAND_JOINTS) || !has(after, NPY_FLOAT, n * STAND_JOINTS)
+        || !has(cost, NPY_DOUBLE, n) || !has(sources, NPY_BOOL, n) || !has(targets, NPY_BOOL, n))
+        return unusable();
+    double *total;
+    int16_t *origin;
+    PyObject *step = new_step(n, &total, &origin);
+    if (step)
+        move(PyArray_DATA(before), PyArray_DATA(after), PyArray_DATA(cost), PyArray_DATA(sources),
+             PyArray_DATA(targets), (int)n, rate, extra, total, origin);
+    return step;
+}
+
 /* --- the visiting order --- */
 
 static PyObject *py_held_karp(PyObject *module, PyObject *const *args, Py_ssize_t n_args)
@@ -381,6 +511,8 @@ static PyMethodDef FUNCTIONS[] = {
     {"tool_pose", py_tool_pose, METH_O, "tool_pose(q): (..., 4, 4)"},
     {"dh_frames", py_dh_frames, METH_O, "dh_frames(q): (..., 6, 4, 4)"},
     {"jacobian", py_jacobian, METH_O, "jacobian(q): (..., 6, 5)"},
+    {"smallest_singular_value", py_smallest_singular_value, METH_O,
+     "smallest_singular_value(q): of the Jacobian, (...)"},
     {"branches", (PyCFunction)(void (*)(void))py_branches, METH_FASTCALL,
      "branches(T, lower, upper, seed): the five fields of inverse.Branches"},
     {"solutions", (PyCFunction)(void (*)(void))py_solutions, METH_FASTCALL,
@@ -395,6 +527,14 @@ static PyMethodDef FUNCTIONS[] = {
      "two_links(rows of x, y, l1, l2): a (..., 2), b (..., 2), out of reach (...)"},
     {"turned", (PyCFunction)(void (*)(void))py_turned, METH_FASTCALL,
      "turned(angles, lower, upper): next to their ranges by whole turns"},
+    {"stand", py_stand, METH_VARARGS,
+     "stand(places, branches, pitches, lower, upper): joints 1 to 4 (n, 4), their excess (n, 4)"},
+    {"standings", py_standings, METH_VARARGS,
+     "standings(places, pitches, finer, *limits): cells (n, 4, P, 4), pitches (n, 4, P)"},
+    {"smooth_step", py_smooth_step, METH_VARARGS,
+     "smooth_step(before, after, cost, reach, tear): costs (n_cells,), where from (n_cells,)"},
+    {"move", py_move, METH_VARARGS,
+     "move(before, after, cost, sources, targets, rate, extra): the same"},
     {"held_karp", (PyCFunction)(void (*)(void))py_held_karp, METH_FASTCALL,
      "held_karp(distances, return_home): the shortest order (n,)"},
     {NULL, NULL, 0, NULL},

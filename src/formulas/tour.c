@@ -178,11 +178,13 @@ static void walk_back(const Tour *tour, Paths paths, int *order)
 
 bool held_karp(int n, const double *distances, bool return_home, int *order)
 {
+    if (n < 1)
+        return true;
     Tour tour = read_tour(n, distances, return_home);
     size_t n_sets = (size_t)1 << n;
     Paths paths = {calloc(n_sets * n, sizeof(double)), calloc(n_sets, sizeof(Set))};
     bool has_memory = paths.left && paths.ends;
-    if (has_memory && n > 0) {
+    if (has_memory) {
         double bound = good_length(&tour) * (1 + ROUNDING) + DBL_MIN;
         for (int j = 0; j < n; j++) {
             Set set = (Set)1 << j;

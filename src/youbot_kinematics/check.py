@@ -22,8 +22,7 @@ from .contract import (
     shape_problems,
     trajectory_from_command,
 )
-from .kinematics import dh_frames, jacobian
-from .singularity import smallest_singular_value
+from .kinematics import smallest_singular_value, tool_pose
 from .trajectory import Trajectory, interpolate
 
 #: The trajectory is evaluated this often, s; but no more than so many times from point to point.
@@ -130,7 +129,8 @@ def check_command(
         known: dict = {"checkpoint_distances": (), "checkpoint_angles": (), "failures": problems}
         return Report(**{**nothing, **known})
     trajectory = trajectory_from_command(command)._replace(segments=tuple(segments))
-    peaks = _Peaks.over(_peaks(trajectory, times, checkpoints) for times in _moments(trajectory))
+    lines = _lines_of(segments, checkpoints)
+    peaks = _Peaks.over(_peaks(trajectory, times, lines) for times in _moments(trajectory))
     distances, angles = _missed(trajectory, checkpoints)
     kinds = [segment.kind for segment in segments]
     figures = {
@@ -157,6 +157,15 @@ def distance_to_line(points, a, b) -> np.ndarray:
     square = np.maximum((along**2).sum(axis=-1), 1e-18)
     s = np.clip(((points - a) * along).sum(axis=-1) / square, 0.0, 1.0)
     return np.linalg.norm(points - a - s[:, None] * along, axis=1)
+
+
+class _Lines(NamedTuple):
+    """When the tool follows straight lines, in order of time, and which."""
+
+    start: np.ndarray  # (m,) s
+    end: np.ndarray  # (m,) s
+    a: np.ndarray  # where each begins, (m, 3) m
+    b: np.ndarray  # where it ends, (m, 3) m
 
 
 class _Peaks(NamedTuple):
@@ -194,30 +203,35 @@ def _moments(trajectory: Trajectory) -> Iterator[np.ndarray]:
         yield np.append(points[i] + done * step[i], points[-1])
 
 
-def _peaks(trajectory: Trajectory, times, checkpoints) -> _Peaks:
+def _peaks(trajectory: Trajectory, times, lines: _Lines) -> _Peaks:
     q, v, a = interpolate(trajectory, times)
-    frames = dh_frames(q)
     return _Peaks(
         q.min(axis=0),
         q.max(axis=0),
         np.abs(v).max(axis=0),
         np.abs(a).max(axis=0),
-        float(smallest_singular_value(jacobian(q)).min()),
-        _line_distance(trajectory.segments, times, frames[:, -1, :3, 3], checkpoints),
+        float(smallest_singular_value(q).min()),
+        _line_distance(lines, times, tool_pose(q)[:, :3, 3]),
     )
 
 
-def _line_distance(segments, times, tool, checkpoints) -> float:
+def _lines_of(segments, checkpoints) -> _Lines:
+    known = [s for s in segments if s.kind == "line" and checkpoints is not None]
+    if not known:
+        return _Lines(*np.zeros((2, 0)), *np.zeros((2, 0, 3)))
+    start, end = np.array([(s.start, s.end) for s in known]).T
+    numbers = np.array([(s.from_checkpoint, s.to_checkpoint) for s in known]).T
+    return _Lines(start, end, *checkpoints[numbers, :3, 3])
+
+
+def _line_distance(lines: _Lines, times, tool) -> float:
     """How far the tool (m, 3) is from its lines at times (m,), at most; NaN if it is on none."""
-    if checkpoints is None or not segments:
-        return np.nan
-    starts, ends = np.array([(s.start, s.end) for s in segments]).T
-    i = np.searchsorted(starts, times, side="right") - 1
-    on_line = np.array([s.kind == "line" for s in segments])[i] & (i >= 0) & (times <= ends[i])
+    i = np.searchsorted(lines.start, times, side="right") - 1
+    on_line = i >= 0
+    on_line[on_line] = times[on_line] <= lines.end[i[on_line]]
     if not on_line.any():
         return np.nan
-    numbers = np.array([(s.from_checkpoint, s.to_checkpoint) for s in segments])
-    a, b = checkpoints[numbers[i[on_line]].T, :3, 3]
+    a, b = lines.a[i[on_line]], lines.b[i[on_line]]
     return float(distance_to_line(tool[on_line], a, b).max())
 
 
@@ -225,14 +239,16 @@ def _missed(trajectory, checkpoints):
     """By how much each checkpoint after the start is missed: distances (m) and angles (rad)."""
     if checkpoints is None:
         return (), ()
-    T = dh_frames(trajectory.positions)[:, -1]
+    T = tool_pose(trajectory.positions)
+    end_times = {segment.to_checkpoint: segment.end for segment in trajectory.segments}
     distances, angles = [], []
     for number, wanted in enumerate(checkpoints[1:], start=1):
-        ends = [s.end for s in trajectory.segments if s.to_checkpoint == number]
-        away = np.linalg.norm(T[:, :3, 3] - wanted[:3, 3], axis=1)
-        i = int(np.argmin(np.abs(trajectory.times - ends[-1]) if ends else away))
+        if number in end_times:
+            i = int(np.argmin(np.abs(trajectory.times - end_times[number])))
+        else:
+            i = int(np.argmin(np.linalg.norm(T[:, :3, 3] - wanted[:3, 3], axis=1)))
         turn = Rotation.from_matrix(T[i, :3, :3].T @ wanted[:3, :3])
-        distances.append(float(away[i]))
+        distances.append(float(np.linalg.norm(T[i, :3, 3] - wanted[:3, 3])))
         angles.append(float(turn.magnitude()))
     return tuple(distances), tuple(angles)
 

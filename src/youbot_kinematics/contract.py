@@ -103,6 +103,8 @@ def _form_problems(command: Command) -> list[str]:
 
 def _row_problem(quantity: str, rows) -> str:
     """The first row that does not hold a finite number for each joint, as a sentence, or ''."""
+    if isinstance(rows, np.ndarray) and rows.shape[1:] == (arm.DOF,) and np.isfinite(rows).all():
+        return ""
     for point, row in enumerate(rows):
         if len(row) != arm.DOF:
             return f"point {point} has {len(row)} values of {quantity}, not {arm.DOF}"

@@ -75,6 +75,16 @@ def dh_frames(q) -> np.ndarray:
     return formulas.dh_frames(as_joints(q)) if frames is None else frames
 
 
+def tool_pose(q) -> np.ndarray:
+    """Pose (..., 4, 4) of the tool in ``base_link``, the last of ``dh_frames(q)``; m.
+
+    Raises:
+        InputError: q has another shape than (..., 5), or is not finite.
+    """
+    T = formulas.tool_pose(q)
+    return formulas.tool_pose(as_joints(q)) if T is None else T
+
+
 def jacobian(q) -> np.ndarray:
     """Geometric Jacobian of the tool, linear (m/rad) over angular velocity (rad/rad).
 
@@ -89,6 +99,19 @@ def jacobian(q) -> np.ndarray:
     """
     J = formulas.jacobian(q)
     return formulas.jacobian(as_joints(q)) if J is None else J
+
+
+def smallest_singular_value(q) -> np.ndarray:
+    """Smallest singular value (...) of ``jacobian(q)``, from its two blocks: see ``singularity``.
+
+    Args:
+        q: joint positions (..., 5), rad.
+
+    Raises:
+        InputError: q has another shape, or is not finite.
+    """
+    value = formulas.smallest_singular_value(q)
+    return formulas.smallest_singular_value(as_joints(q)) if value is None else value
 
 
 class Kinematics:
@@ -180,8 +203,7 @@ class YoubotKinematics(Kinematics):
             InputError: q has another shape or is not finite, or there is no such frame.
         """
         if up_to_joint == arm.DOF:
-            T = formulas.tool_pose(q)
-            return formulas.tool_pose(as_joints(q)) if T is None else T
+            return tool_pose(q)
         return dh_frames(q)[..., as_joint_number(up_to_joint), :, :].copy()
 
     def get_jacobian(self, q) -> np.ndarray:
@@ -197,6 +219,15 @@ class YoubotKinematics(Kinematics):
             InputError: q has another shape, or is not finite.
         """
         return jacobian(q)
+
+    def smallest_singular_value(self, q, position_only: bool = False) -> np.ndarray:
+        """Smallest singular value of the Jacobian: (...) for q of (..., 5) rad.
+
+        The arguments are those of ``Kinematics.smallest_singular_value``.
+        """
+        if position_only:
+            return super().smallest_singular_value(q, position_only)
+        return smallest_singular_value(q)
 
     def inverse_kinematics(self, T, seed=None) -> np.ndarray:
         """Every joint position inside the limits that brings the tool to a pose, in closed form.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
+from functools import lru_cache
 from types import ModuleType
 
 import numpy as np
@@ -59,19 +60,26 @@ def optimal_rate(path: JointPath, velocity, acceleration):
     length = np.abs(np.diff(path.joints, axis=0)).max(axis=1).sum()
     geometry = toppra.SplineInterpolator(path.s * length, path.joints)
     grid = _grid(path.s * length)
-    constraints = [
-        JointVelocityConstraint(np.column_stack([-velocity, velocity])),
-        JointAccelerationConstraint(
-            np.column_stack([-acceleration, acceleration]),
-            discretization_scheme=DiscretizationType.Interpolation,
-        ),
-    ]
+    constraints = _constraints(tuple(velocity), tuple(acceleration))
     solver = TOPPRA(constraints, geometry, gridpoints=grid, solver_wrapper="seidel")
     rates = solver.compute_parameterization(0.0, 0.0)[1]
     if rates is None or not np.isfinite(rates).all():
         raise PlanningError(f"no time-optimal timing of the {path.kind} was found")
     times = np.append(0.0, np.cumsum(2 * np.diff(grid) / (rates[1:] + rates[:-1])))
     return times, rates / length
+
+
+@lru_cache(maxsize=1)  # a plan has many paths, and toppra describes its constraints at length
+def _constraints(velocity: tuple, acceleration: tuple) -> list:
+    """toppra's constraints for limits of each joint, rad/s and rad/s^2."""
+    v, a = np.array(velocity), np.array(acceleration)
+    return [
+        JointVelocityConstraint(np.column_stack([-v, v])),
+        JointAccelerationConstraint(
+            np.column_stack([-a, a]),
+            discretization_scheme=DiscretizationType.Interpolation,
+        ),
+    ]
 
 
 def _grid(s: np.ndarray) -> np.ndarray:

@@ -18,10 +18,9 @@ from .check import distance_to_line
 from .colours import KIND_COLOURS
 from .exceptions import InputError
 from .files import new_file
-from .kinematics import dh_frames, jacobian
+from .kinematics import dh_frames, smallest_singular_value
 from .resources import resource_path
 from .shapes import arm_shapes, mesh
-from .singularity import smallest_singular_value
 from .track import tool_tracks
 from .trajectory import Trajectory, interpolate
 
@@ -86,7 +85,7 @@ def page_data(plan) -> dict:
         "joints": _joints(plan, states),
         "effort": _effort(plan, states),
         "distance": _distance(plan, states, frames[:, -1, :3, 3]),
-        "singular_value": _rounded(smallest_singular_value(jacobian(states.positions))),
+        "singular_value": _rounded(smallest_singular_value(states.positions)),
         "report": _rows(plan),
     }
 

@@ -11,8 +11,7 @@ from .check import distance_to_line
 from .colours import BLACK, BLUE, GREEN, GREY, KIND_COLOURS, ORANGE, SHADE, SKY
 from .exceptions import InputError
 from .files import new_file
-from .kinematics import dh_frames, jacobian
-from .singularity import smallest_singular_value
+from .kinematics import dh_frames, smallest_singular_value
 from .track import tool_tracks
 from .trajectory import Trajectory, interpolate
 
@@ -185,7 +184,7 @@ def _draw_effort(axes, plan, states: Trajectory) -> None:
 
 
 def _draw_singular_value(axes, plan, states: Trajectory) -> None:
-    values = smallest_singular_value(jacobian(states.positions))
+    values = smallest_singular_value(states.positions)
     axes.plot(states.times, values, color=BLUE)
     axes.set(ylabel="value (m/rad)")
     axes.set_ylim(bottom=0)

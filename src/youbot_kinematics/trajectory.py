@@ -78,19 +78,28 @@ def interpolate(trajectory: Trajectory, times):
     if len(knots) == 1:
         return tuple(np.repeat(a, len(times), axis=0) for a in trajectory[1:4])
     i = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-    h = (knots[i + 1] - knots[i])[:, None]
     t = (times - knots[i])[:, None]
-    p, v, a = trajectory.positions, trajectory.velocities, trajectory.accelerations
-    # The cubic's and higher coefficients, from what the quadratic start leaves to the end.
-    p0, v0, a0 = p[i], v[i], a[i]
-    dp = p[i + 1] - p0 - v0 * h - a0 * h**2 / 2
-    dv = (v[i + 1] - v0 - a0 * h) * h
-    da = (a[i + 1] - a0) * h**2
-    c3 = (10 * dp - 4 * dv + da / 2) / h**3
-    c4 = (-15 * dp + 7 * dv - da) / h**4
-    c5 = (6 * dp - 3 * dv + da / 2) / h**5
+    first, last = (i.min(), i.max() + 1) if len(i) else (0, 0)
+    between = slice(first, last + 1)
+    coefficients = _quintics(knots[between], *(rows[between] for rows in trajectory[1:4]))
+    p0, v0, a0, c3, c4, c5 = (c[i - first] for c in coefficients)
     return (
         p0 + t * (v0 + t * (a0 / 2 + t * (c3 + t * (c4 + t * c5)))),
         v0 + t * (a0 + t * (3 * c3 + t * (4 * c4 + t * 5 * c5))),
         a0 + t * (6 * c3 + t * (12 * c4 + t * 20 * c5)),
     )
+
+
+def _quintics(knots, p, v, a):
+    """The polynomials between n points: position, velocity and acceleration at their beginnings,
+    and their coefficients from the cubic's on; (n - 1, 5) each."""
+    h = np.diff(knots)[:, None]
+    p0, v0, a0 = p[:-1], v[:-1], a[:-1]
+    # The cubic's and higher coefficients, from what the quadratic start leaves to the end.
+    dp = p[1:] - p0 - v0 * h - a0 * h**2 / 2
+    dv = (v[1:] - v0 - a0 * h) * h
+    da = (a[1:] - a0) * h**2
+    c3 = (10 * dp - 4 * dv + da / 2) / h**3
+    c4 = (-15 * dp + 7 * dv - da) / h**4
+    c5 = (6 * dp - 3 * dv + da / 2) / h**5
+    return p0, v0, a0, c3, c4, c5

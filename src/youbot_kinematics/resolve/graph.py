@@ -14,12 +14,11 @@ from .. import arm
 from ..exceptions import PlanningError
 from .lines import Line
 from .route import SAME_PLANE, Route, branch_of, cell_of, pitch_of, route_along, standings
-from .search import DETOUR, SAME, SMOOTH, SWAPPED, TURNED, Graph, smooth_costs
+from .search import DETOUR, SAME, SMOOTH, SWAPPED, TURNED, Graph, smooth_step
 
 _N_CELLS = 128
 # At the ends of a detour: steps are cut in so many, so often, and the pitch is tried as often.
 _CUTS, _CUT_ROUNDS, _FINER = 8, 2, 9
-_CHUNK = 256
 
 
 class Tour(NamedTuple):
@@ -45,43 +44,43 @@ def lay_out(lines, exact, limits: arm.JointLimits, rate: float) -> Tour:
         PlanningError: a checkpoint is out of reach.
     """
     fractions = [line.waypoints() for line in lines]
-    fine = [np.zeros(len(u), dtype=bool) for u in fractions]
-    tour = _build(lines, fractions, fine, exact, limits, rate)
+    route = route_along(lines, fractions)
+    fine = np.zeros(len(route.u), dtype=bool)
+    cells = standings(route, limits, _N_CELLS)
+    tour = _build(lines, route, fine, cells, exact, limits, rate)
     for _ in range(_CUT_ROUNDS):
         blocked = _blocked(tour.graph)
         if not blocked.any():
             return tour
-        fractions, fine = _cut(tour, blocked)
-        tour = _build(lines, fractions, fine, exact, limits, rate)
+        route, fine, cells = _cut(tour, blocked, limits)
+        tour = _build(lines, route, fine, cells, exact, limits, rate)
     return _with_detours(tour)
 
 
-def _build(lines, fractions, fine, exact, limits, rate) -> Tour:
-    route = route_along(lines, fractions)
-    fine = np.concatenate(fine)
-    joints, pitch = standings(route, limits, _N_CELLS)
-    if fine.any():
-        joints[:, fine], pitch[fine] = standings(route.take(fine), limits, _N_CELLS, _FINER)
+def _build(lines, route: Route, fine, cells, exact, limits, rate) -> Tour:
+    """The tour over a route, given what ``standings`` finds along it, which this changes."""
+    joints, pitch = cells
+    velocity = limits.velocity[:4].astype(np.float32)
     demanded: dict = {}
     confined: dict = {}
-    apart = []
+    apart: dict = {}
     for k in np.flatnonzero((route.u == 0) | (route.u == 1)):
         number = int(route.line[k] + route.u[k])
         if exact[number] is None:
-            _must_reach(joints[0, k], number, lines[route.line[k]].point(route.u[k]))
+            _must_reach(joints[k], number, lines[route.line[k]].point(route.u[k]))
             continue
         for q in exact[number]:
             branch, in_plane = branch_of(route, k, q)
             cell = branch * _N_CELLS + int(cell_of(pitch_of(q), _N_CELLS))
             demanded[int(k), cell] = q
-            joints[:, k].reshape(4, -1)[:, cell] = q[:4]
+            joints[k].reshape(-1, 4)[cell] = q[:4].astype(np.float32) / velocity
             pitch[k].reshape(-1)[cell] = pitch_of(q)
             confined.setdefault(int(k), []).append(cell)
             if not in_plane:
-                apart.append((int(k), cell))
+                apart.setdefault(int(k), []).append(cell)
     graph = Graph(
-        joints=joints / limits.velocity[:4, None, None, None].astype(np.float32),
-        valid=np.isfinite(joints[0]),
+        joints=joints,
+        valid=np.isfinite(joints[..., 0]),
         links=_links(route),
         start=confined.pop(0)[0],
         confined=confined,
@@ -116,19 +115,19 @@ def _links(route: Route) -> np.ndarray:
 
 def _blocked(graph: Graph) -> np.ndarray:
     """Steps (K - 1,) along a line that the arm cannot make from any cell to any other."""
-    free = np.empty(len(graph.links), dtype=bool)
-    for first in range(0, len(free), _CHUNK):
-        joints = graph.joints[:, first : first + _CHUNK + 1]
-        steps = smooth_costs(joints[:, :-1], joints[:, 1:])
-        free[first : first + _CHUNK] = np.isfinite(steps).any(axis=(1, 2, 3))
-    return ~free & (graph.links == SMOOTH)
+    cost = np.zeros(graph.valid[0].size)
+    smooth = np.flatnonzero(graph.links == SMOOTH)
+    blocked = np.zeros(len(graph.links), dtype=bool)
+    blocked[smooth] = [np.isinf(smooth_step(graph, k + 1, cost)[0]).all() for k in smooth]
+    return blocked
 
 
-def _cut(tour: Tour, blocked):
-    """Fractions of each line with the first and last step of blocked stretches cut in more.
+def _cut(tour: Tour, blocked, limits):
+    """The route with the first and last step of each blocked stretch cut in more.
 
     Returns:
-        Fractions and, for each, whether it is at such a stretch and wants finer pitches: two lists.
+        The route; for each waypoint whether it is at such a stretch and wants finer pitches, (K,)
+        bool; and what ``standings`` finds along it.
     """
     route = tour.route
     first = blocked & ~np.append(False, blocked[:-1])
@@ -145,7 +144,17 @@ def _cut(tour: Tour, blocked):
         order = np.argsort(u)
         fractions.append(u[order])
         fine.append(np.append(near[on_line], np.ones(len(added), dtype=bool))[order])
-    return fractions, fine
+    route, wants = route_along(tour.lines, fractions), np.concatenate(fine)
+    coarse = tour.graph.joints[~near], tour.pitch[~near]
+    found = standings(route.take(wants), limits, _N_CELLS, _FINER)
+    return route, wants, [_interleaved(wants, *parts) for parts in zip(found, coarse)]
+
+
+def _interleaved(chosen, these, others) -> np.ndarray:
+    """The rows of two arrays in one: these where ``chosen`` (n,) bool, the others elsewhere."""
+    whole = np.empty((len(chosen), *these.shape[1:]), these.dtype)
+    whole[chosen], whole[~chosen] = these, others
+    return whole
 
 
 def _with_detours(tour: Tour) -> Tour:
@@ -155,11 +164,11 @@ def _with_detours(tour: Tour) -> Tour:
     index = np.flatnonzero(keep)
     moved = np.cumsum(keep) - 1
     graph = tour.graph._replace(
-        joints=tour.graph.joints[:, keep],
+        joints=tour.graph.joints[keep],
         valid=tour.graph.valid[keep],
         links=np.where(blocked[index[1:] - 1], DETOUR, tour.graph.links[index[1:] - 1]),
         confined={int(moved[k]): cells for k, cells in tour.graph.confined.items()},
-        apart=[(int(moved[k]), cell) for k, cell in tour.graph.apart],
+        apart={int(moved[k]): cells for k, cells in tour.graph.apart.items()},
         checkpoint=tour.graph.checkpoint[keep],
     )
     demanded = {(int(moved[k]), cell): q for (k, cell), q in tour.demanded.items()}

@@ -80,9 +80,7 @@ def _normal_form(form, joints, slope, hold, pull, joined):
 
 def joints_on(way: Itinerary, pitch, limits):
     """Joints 1 to 4 on the itinerary's branches at pitches (n,), and their excess: (n, 4) each."""
-    joints, excess = arm_joints(way.route, way.track, pitch, limits)
-    row = np.arange(len(pitch))
-    return joints[row, way.elbow], excess[row, way.elbow]
+    return arm_joints(way.route, 2 * way.track + way.elbow, pitch, limits)
 
 
 def tube(way: Itinerary, limits: arm.JointLimits):

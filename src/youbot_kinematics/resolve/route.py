@@ -11,15 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import arm
-from ..inverse import plane_joints, wrap_into_limits
+from .. import arm, formulas
 from .lines import Line
 
 # The search keeps this far from the joint limits along a line (rad), and closes up to them towards
 # checkpoints (rad/m): the curves through its waypoints need room to swing.
 _MARGIN, _MARGIN_RISE = 1e-3, 0.05
-_ROUNDING = 1e-9  # rad
-_CHUNK = 256  # waypoints at once, to bound the memory
 
 
 class Route(NamedTuple):
@@ -37,6 +34,10 @@ class Route(NamedTuple):
         """The waypoints of an index, a slice or a mask."""
         return Route(*(column[index] for column in self))
 
+    def places(self) -> np.ndarray:
+        """What decides where the arm can stand: azimuth, radius, height and margin, (K, 4)."""
+        return np.stack([self.azimuth, self.radius, self.height, self.margin], axis=-1)
+
 
 def route_along(lines: list[Line], fractions: list[np.ndarray]) -> Route:
     """The route with waypoints at the given fractions u (n_i,) of each line."""
@@ -49,32 +50,19 @@ def route_along(lines: list[Line], fractions: list[np.ndarray]) -> Route:
     return Route(*(np.concatenate(column) for column in zip(*columns)))
 
 
-def arm_joints(route: Route, track, pitch, limits: arm.JointLimits):
-    """Joints 1 to 4 at waypoints in closed form, for both elbows.
+def arm_joints(route: Route, branch, pitch, limits: arm.JointLimits):
+    """Joints 1 to 4 at waypoints in closed form.
 
     Args:
         route: K waypoints.
-        track: 0 (front) or 1 (back), broadcast against the pitch.
-        pitch: beta (K, ...), rad.
+        branch: (K,) 2 * track (0 front, 1 back) + elbow (0 for +, 1 for -).
+        pitch: beta (K,), rad.
 
     Returns:
-        ``(joints, excess)``: (K, ..., 2, 4) rad, first with the elbow +, then -; and by how much
-        each passes its limits less the margin, NaN where the wrist is out of reach.
+        ``(joints, excess)``: (K, 4) rad, and by how much each passes its limits less the margin,
+        NaN where the wrist is out of reach.
     """
-    column = (-1,) + (1,) * (pitch.ndim - 1)
-    azimuth = route.azimuth.reshape(column) + np.pi * track
-    radius = route.radius.reshape(column) * (1 - 2 * track)
-    bent, beyond = plane_joints(radius, route.height.reshape(column), pitch)
-    joints = np.empty((*bent.shape[:-1], 4))
-    joints[..., 0] = (arm.OFFSET[0] - azimuth)[..., None]
-    joints[..., 1:] = bent
-    first_four = arm.JointLimits(*(limit[:4] for limit in limits))
-    joints = wrap_into_limits(joints, first_four)
-    margin = route.margin.reshape(*column, 1, 1)
-    excess = np.maximum(first_four.lower - joints, joints - first_four.upper) + margin
-    excess[excess <= _ROUNDING] = 0.0
-    excess[beyond != 0] = np.nan
-    return joints, excess
+    return formulas.stand(route.places(), branch, pitch, limits.lower, limits.upper)
 
 
 def pitch_grid(n_cells: int) -> np.ndarray:
@@ -95,29 +83,12 @@ def standings(route: Route, limits: arm.JointLimits, n_cells: int, finer: int = 
         finer: how many pitches are tried in a cell, odd. The valid one next to its middle is taken.
 
     Returns:
-        ``(joints, pitch)``: joints 1 to 4, (4, K, 4, n_cells) rad, NaN where the arm cannot stand,
-        and the pitch there (K, 4, n_cells), rad. The branch is 2 * track + elbow.
+        ``(cells, pitch)``, both float32, to save memory: joints 1 to 4 over their velocities,
+        (K, 4, n_cells, 4) s, NaN where the arm cannot stand; the pitch there, (K, 4, n_cells) rad.
     """
-    K = len(route.u)
-    joints = np.empty((4, K, 4, n_cells), dtype=np.float32)
-    pitch = np.empty((K, 4, n_cells), dtype=np.float32)
-    for first in range(0, K, _CHUNK):
-        rows = slice(first, first + _CHUNK)
-        joints[:, rows], pitch[rows] = _standings(route.take(rows), limits, n_cells, finer)
-    return joints, pitch
-
-
-def _standings(route: Route, limits, n_cells, finer):
-    K = len(route.u)
-    tried = np.broadcast_to(pitch_grid(n_cells * finer), (K, 2, n_cells * finer))
-    joints, excess = arm_joints(route, np.arange(2)[:, None], tried, limits)
-    joints[~(excess == 0).all(axis=-1)] = np.nan
-    joints = np.moveaxis(joints, (-1, -2), (0, 3)).reshape(4, K, 4, n_cells, finer)
-    off_middle = np.abs(np.arange(finer) - finer // 2)
-    rank = np.where(np.isnan(joints[0]), finer, off_middle)
-    best = rank.argmin(axis=-1)[..., None]
-    pitch = np.take_along_axis(tried[:, :1].reshape(K, 1, n_cells, finer), best, axis=-1)
-    return np.take_along_axis(joints, best[None], axis=-1)[..., 0], pitch[..., 0]
+    tried = pitch_grid(n_cells * finer)
+    bounds = limits.lower, limits.upper, limits.velocity
+    return formulas.standings(route.places(), tried, finer, *bounds)
 
 
 def branch_of(route: Route, k: int, q: np.ndarray):

@@ -75,6 +75,7 @@ def solve_box(bands: np.ndarray, g: np.ndarray, lower: np.ndarray, upper: np.nda
     below, above = x - middle + half, middle + half - x  # slacks, and their multipliers
     scale = np.abs(banded_product(bands, x) + g).max() + _TINY
     push_up, push_down = scale / below, scale / above
+    stiff = _uncoupled(bands, given)
     for _ in range(_MAX_ITERATIONS):
         gap = (below @ push_up + above @ push_down) / (2 * len(x))
         slope = banded_product(bands, x) + g
@@ -82,9 +83,10 @@ def solve_box(bands: np.ndarray, g: np.ndarray, lower: np.ndarray, upper: np.nda
         if gap < _TINY and np.abs(residual).max() < _TINY:
             break
         mu = _CENTRING * gap
-        stiff = bands.copy()
-        stiff[0] += push_up / below + push_down / above
-        dx = _newton_step(stiff, slope - mu / below + mu / above, given)
+        # The step of the free values to where their slope is zero; the given ones stay.
+        stiff[0] = np.where(given, 1.0, bands[0] + (push_up / below + push_down / above))
+        target = np.where(given, 0.0, -(slope - mu / below + mu / above))
+        dx = solveh_banded(stiff, target, lower=True)
         d_up = mu / below - push_up - push_up / below * dx
         d_down = mu / above - push_down + push_down / above * dx
         t = _longest((below, above, push_up, push_down), (dx, -dx, d_up, d_down))
@@ -95,7 +97,7 @@ def solve_box(bands: np.ndarray, g: np.ndarray, lower: np.ndarray, upper: np.nda
 
 def _longest(values, steps) -> float:
     """The fraction (at most 1) of the steps that leaves all values positive."""
-    return min(1.0, *(float(0.99 / np.max(np.append(-d / v, 0.99))) for v, d in zip(values, steps)))
+    return 0.99 / max(0.99, *(float((-d / v).max()) for v, d in zip(values, steps)))
 
 
 def banded_product(bands: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -108,10 +110,9 @@ def banded_product(bands: np.ndarray, x: np.ndarray) -> np.ndarray:
     return y
 
 
-def _newton_step(bands: np.ndarray, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """The step of the free variables to where their slope is zero; the held ones stay."""
+def _uncoupled(bands: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """The bands (w, n) without what ties given values (n,) bool to others, or one to another."""
     free = bands.copy()
-    free[0, held] = 1.0
     for k in range(1, len(bands)):
-        free[k, :-k][held[:-k] | held[k:]] = 0.0
-    return solveh_banded(free, np.where(held, 0.0, -slope), lower=True)
+        free[k, :-k][given[:-k] | given[k:]] = 0.0
+    return free
