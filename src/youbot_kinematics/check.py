@@ -219,8 +219,9 @@ def _lines_of(segments, checkpoints) -> _Lines:
     known = [s for s in segments if s.kind == "line" and checkpoints is not None]
     if not known:
         return _Lines(*np.zeros((2, 0)), *np.zeros((2, 0, 3)))
-    start, end, numbers = zip(*((s.start, s.end, (s.from_checkpoint, s.to_checkpoint)) for s in known))
-    return _Lines(np.array(start), np.array(end), *checkpoints[np.array(numbers).T, :3, 3])
+    start, end = np.array([(s.start, s.end) for s in known]).T
+    numbers = np.array([(s.from_checkpoint, s.to_checkpoint) for s in known]).T
+    return _Lines(start, end, *checkpoints[numbers, :3, 3])
 
 
 def _line_distance(lines: _Lines, times, tool) -> float:
