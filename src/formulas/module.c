@@ -392,10 +392,10 @@ static PyObject *py_stand(PyObject *module, PyObject *args)
     for (npy_intp i = 0; joints && excess && i < n; i++) {
         double q[2][STAND_JOINTS], beyond[2][STAND_JOINTS];
         npy_intp at = ((npy_intp *)PyArray_DATA(branch))[i];
-        stand((Place *)PyArray_DATA(places) + i, at / 2 % 2, ((double *)PyArray_DATA(pitch))[i],
+        stand((Place *)PyArray_DATA(places) + i, at >> 1 & 1, ((double *)PyArray_DATA(pitch))[i],
               &limits, q, beyond);
-        memcpy(PyArray_GETPTR1(joints, i), q[at % 2], sizeof q[0]);
-        memcpy(PyArray_GETPTR1(excess, i), beyond[at % 2], sizeof q[0]);
+        memcpy(PyArray_GETPTR1(joints, i), q[at & 1], sizeof q[0]);
+        memcpy(PyArray_GETPTR1(excess, i), beyond[at & 1], sizeof q[0]);
     }
     return Py_BuildValue("NN", joints, excess);
 }

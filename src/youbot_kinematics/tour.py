@@ -13,7 +13,7 @@ from . import formulas
 #: Up to so many targets the order is exact.
 EXACT_UP_TO = formulas.MOST_EXACT
 # How long the local search looks, s for each target, and the largest of the integers that it takes.
-_SEARCH_TIME, _LARGEST = 2.5e-3, 65535
+_SEARCH_TIME, _LARGEST = 1e-3, 65535
 
 
 def shortest_path(start, positions, return_home: bool = False):

@@ -145,16 +145,20 @@ def _cut(tour: Tour, blocked, limits):
         fractions.append(u[order])
         fine.append(np.append(near[on_line], np.ones(len(added), dtype=bool))[order])
     route, wants = route_along(tour.lines, fractions), np.concatenate(fine)
-    coarse = tour.graph.joints[~near], tour.pitch[~near]
-    found = standings(route.take(wants), limits, _N_CELLS, _FINER)
-    return route, wants, [_interleaved(wants, *parts) for parts in zip(found, coarse)]
+    return route, wants, _cells_along(route, wants, limits, tour, np.flatnonzero(~near))
 
 
-def _interleaved(chosen, these, others) -> np.ndarray:
-    """The rows of two arrays in one: these where ``chosen`` (n,) bool, the others elsewhere."""
-    whole = np.empty((len(chosen), *these.shape[1:]), these.dtype)
-    whole[chosen], whole[~chosen] = these, others
-    return whole
+def _cells_along(route: Route, fine, limits, tour: Tour, known):
+    """What ``standings`` finds along a route, with finer pitches at the ``fine`` waypoints (K,).
+
+    The others are waypoints of a tour, whose numbers in it are ``known``: they are not asked again.
+    """
+    index = np.zeros(len(fine), dtype=int)
+    index[~fine] = known
+    cells = [array.take(index, axis=0) for array in (tour.graph.joints, tour.pitch)]
+    for array, found in zip(cells, standings(route.take(fine), limits, _N_CELLS, _FINER)):
+        array[fine] = found
+    return cells
 
 
 def _with_detours(tour: Tour) -> Tour:
