@@ -156,6 +156,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./run soak", description=__doc__.splitlines()[0])
     parser.add_argument("--plans", type=int, default=1000, help="how many (default: 1000)")
     plans = parser.parse_args().plans
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # ends what was started, as Ctrl-C does
     with ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         bag = f"{folder}/soak.bag"
