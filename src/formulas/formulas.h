@@ -21,6 +21,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define PI 3.14159265358979323846 /* which C99 does not define */
+
 enum { JOINTS = 5, FRAMES = JOINTS + 1, BRANCHES = 4 };
 
 typedef double Joints[JOINTS];

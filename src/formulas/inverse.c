@@ -10,8 +10,6 @@
 /* Points this little out of reach (m) are on its edge: others' forward kinematics put them so. */
 #define EDGE 1e-10
 
-static const double PI = 3.14159265358979323846;
-
 double turned(double angle, double lower, double upper, double *excess)
 {
     *excess = 0;

@@ -3,13 +3,17 @@
 
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* By how much an angle is nearer to its limits than a margin, or beyond them. */
 static inline double excess_of(double angle, double lower, double upper, double margin)
 {
     double excess = fmax(lower - angle, angle - upper) + margin;
     return excess <= LIMIT_ROUNDING ? 0 : excess;
+}
+
+/* Joint 1 on a track, not turned into its limits: it does not depend on the pitch. */
+static inline double joint_1(const Place *place, int track)
+{
+    return arm.offset[0] - (place->azimuth + PI * track);
 }
 
 void stand(const Place *place, int track, double pitch, const Limits *limits,
@@ -21,7 +25,7 @@ void stand(const Place *place, int track, double pitch, const Limits *limits,
     double beyond = bend(tool, pitch, bent);
     for (int elbow = 0; elbow < 2; elbow++)
         for (int j = 0; j < STAND_JOINTS; j++) {
-            double raw = j ? bent[elbow][j - 1] : arm.offset[0] - (place->azimuth + PI * track);
+            double raw = j ? bent[elbow][j - 1] : joint_1(place, track);
             double angle = turned(raw, lower[j], upper[j], &ignored);
             joints[elbow][j] = angle;
             excess[elbow][j] = beyond != 0 ? NAN : excess_of(angle, lower[j], upper[j], place->margin);
@@ -53,12 +57,12 @@ static void fill_cell(const Place *place, int track, const double *pitches, int 
     }
 }
 
-/* Whether joint 1 is inside its limits on a track: it does not depend on the pitch. */
+/* Whether joint 1 is inside its limits on a track, and pitches are worth trying. */
 static bool is_open(const Place *place, int track, const Limits *limits)
 {
-    double ignored, azimuth = place->azimuth + PI * track;
-    double angle = turned(arm.offset[0] - azimuth, limits->lower[0], limits->upper[0], &ignored);
-    return excess_of(angle, limits->lower[0], limits->upper[0], place->margin) == 0;
+    double lower = limits->lower[0], upper = limits->upper[0], ignored;
+    double angle = turned(joint_1(place, track), lower, upper, &ignored);
+    return excess_of(angle, lower, upper, place->margin) == 0;
 }
 
 void standings(const Place *place, const double *pitches, int n_cells, int finer,
